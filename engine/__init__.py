@@ -1,0 +1,38 @@
+"""tumble's engine: rigid bodies in the plane. Start reading at engine/world.py."""
+
+from engine.bodies import Body
+from engine.broad_phase import BROAD_PHASES
+from engine.diagnostics import Diagnostics
+from engine.errors import StepError
+from engine.joints.handle import RevoluteJoint
+from engine.records import Arbiter, Contact
+from engine.settings import Settings
+from engine.shapes import SHAPE_KINDS, Box, Circle
+from engine.snapshot import Snapshot
+from engine.solvers import SOLVERS
+from engine.stages import STAGES
+from engine.tables import BODY_KINDS, CONTACT_RECORD, JOINT_RECORD
+from engine.vec2 import Vec2
+from engine.world import World
+
+__all__ = [
+    "BODY_KINDS",
+    "BROAD_PHASES",
+    "CONTACT_RECORD",
+    "JOINT_RECORD",
+    "SHAPE_KINDS",
+    "SOLVERS",
+    "STAGES",
+    "Arbiter",
+    "Body",
+    "Box",
+    "Circle",
+    "Contact",
+    "Diagnostics",
+    "RevoluteJoint",
+    "Settings",
+    "Snapshot",
+    "StepError",
+    "Vec2",
+    "World",
+]

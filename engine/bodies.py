@@ -1,0 +1,235 @@
+"""Bodies: the handle that a user holds."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+from engine import validate
+from engine.integrate import turn_row
+from engine.shapes import SHAPES, Shape
+from engine.tables import BODY_KINDS, DYNAMIC
+from engine.vec2 import Vec2, cross, unrotate
+
+if TYPE_CHECKING:
+    from engine.world import World
+
+Pair = Sequence[float]
+
+
+class Body:
+    """A body of a world. Reading or changing one that was destroyed is a ValueError.
+
+    Vectors are given back as `Vec2`: a pair (x, y) that also adds, subtracts and scales.
+    """
+
+    __slots__ = ("__weakref__", "_row", "serial", "world")
+
+    def __init__(self, world: World, row: int, serial: int) -> None:
+        self.world = world
+        self.serial = serial  # number of creation, from 0, never given twice
+        self._row = row
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Body) and other.world is self.world and other.serial == self.serial
+
+    def __hash__(self) -> int:
+        return hash((id(self.world), self.serial))
+
+    def __repr__(self) -> str:
+        if not self.alive:
+            return f"<Body {self.serial}, destroyed>"
+        return f"<Body {self.serial}: {self.kind} {self.shape} at ({self.position.x:g}, {self.position.y:g})>"
+
+    @property
+    def alive(self) -> bool:
+        """Whether it is still in its world."""
+        return self.world._state.bodies.holds(self._row, self.serial)
+
+    def destroy(self) -> None:
+        """Takes the body, its contacts and its joints out of the world."""
+        self._check()
+        self.world._destroy_body(self)
+
+    # --- what it is ---------------------------------------------------------------------------------------------
+
+    @property
+    def kind(self) -> str:
+        """ "static" or "dynamic"."""
+        return BODY_KINDS[int(self._body["kind"])]
+
+    @property
+    def shape(self) -> Shape:
+        body = self._body
+        return SHAPES[int(body["shape_kind"])].from_half_extents(float(body["half_x"]), float(body["half_y"]))
+
+    @property
+    def mass(self) -> float:
+        """[kg], infinite for a static body."""
+        return float(self._body["mass"])
+
+    @property
+    def inertia(self) -> float:
+        """About the centre [kg m^2], infinite for a static body."""
+        return float(self._body["inertia"])
+
+    @property
+    def inverse_mass(self) -> float:
+        """[1/kg], 0 for a static body."""
+        return float(self._motion["inverse_mass"])
+
+    @property
+    def inverse_inertia(self) -> float:
+        """[1/(kg m^2)], 0 for a static body."""
+        return float(self._motion["inverse_inertia"])
+
+    @property
+    def friction(self) -> float:
+        """Coefficient; two bodies rub with the square root of the product of theirs."""
+        return float(self._body["friction"])
+
+    @friction.setter
+    def friction(self, value: float) -> None:
+        friction = validate.non_negative("friction", value)
+        validate.in_range(self.world.precision, friction=(friction,))
+        self._body["friction"] = friction
+
+    # --- how it moves -------------------------------------------------------------------------------------------
+
+    @property
+    def position(self) -> Vec2:
+        """Centre of mass [m]."""
+        return Vec2(float(self._body["x"]), float(self._body["y"]))
+
+    @position.setter
+    def position(self, value: Pair) -> None:
+        body = self._body
+        body["x"], body["y"] = validate.vector("position", value)
+
+    @property
+    def angle(self) -> float:
+        """Unwrapped [rad]."""
+        return float(self._body["angle"])
+
+    @angle.setter
+    def angle(self, value: float) -> None:
+        self._body["angle"] = validate.number("angle", value)
+        self._turn()
+
+    rotation = angle  # the talk's word for it
+
+    @property
+    def velocity(self) -> Vec2:
+        """Of the centre of mass [m/s]."""
+        return Vec2(float(self._motion["vx"]), float(self._motion["vy"]))
+
+    @velocity.setter
+    def velocity(self, value: Pair) -> None:
+        x, y = validate.vector("velocity", value)
+        validate.in_range(self.world.precision, velocity=(x, y))
+        motion = self._movable("velocity", value)
+        motion["vx"], motion["vy"] = x, y
+
+    @property
+    def angular_velocity(self) -> float:
+        """[rad/s]"""
+        return float(self._motion["w"])
+
+    @angular_velocity.setter
+    def angular_velocity(self, value: float) -> None:
+        w = validate.number("angular_velocity", value)
+        validate.in_range(self.world.precision, angular_velocity=(w,))
+        self._movable("angular_velocity", value)["w"] = w
+
+    @property
+    def force(self) -> Vec2:
+        """Acts during the next step, then it is used up [N]."""
+        return Vec2(float(self._body["force_x"]), float(self._body["force_y"]))
+
+    @force.setter
+    def force(self, value: Pair) -> None:
+        body = self._body
+        body["force_x"], body["force_y"] = validate.vector("force", value)
+
+    @property
+    def torque(self) -> float:
+        """Acts during the next step, then it is used up [N m]."""
+        return float(self._body["torque"])
+
+    @torque.setter
+    def torque(self, value: float) -> None:
+        self._body["torque"] = validate.number("torque", value)
+
+    def contains(self, point: Pair) -> bool:
+        """Whether a point of the world [m] lies in the body."""
+        x, y = validate.vector("point", point)
+        body, motion = self._body, self._motion
+        q = Vec2(float(motion["cosine"]), float(motion["sine"]))
+        local = unrotate(q, Vec2(x, y) - self.position)
+        shape = SHAPES[int(body["shape_kind"])]
+        return shape.contains(local.x, local.y, float(body["half_x"]), float(body["half_y"]))
+
+    def velocity_at(self, point: Pair) -> Vec2:
+        """Velocity of the material point that is now at `point` in the world [m/s]."""
+        px, py = validate.vector("point", point)
+        w, v, r = self.angular_velocity, self.velocity, Vec2(px, py) - self.position
+        return Vec2(v.x - w * r.y, v.y + w * r.x)
+
+    def apply_force(self, force: Pair, point: Pair | None = None) -> None:
+        """Adds a force [N] for the next step, at a point of the world [m] or at the centre of mass."""
+        fx, fy, arm = self._lever("force", force, point)
+        body = self._body
+        total = (body["force_x"] + fx, body["force_y"] + fy, body["torque"] + cross(arm, Vec2(fx, fy)))
+        validate.in_range(self.world.precision, force=total)
+        body["force_x"], body["force_y"], body["torque"] = total
+
+    def apply_impulse(self, impulse: Pair, point: Pair | None = None) -> None:
+        """Changes the velocity at once by an impulse [N s], at a point of the world [m] or at the centre of mass.
+
+        A static body does not move.
+        """
+        px, py, arm = self._lever("impulse", impulse, point)
+        vx, vy = self.velocity
+        changed = (
+            vx + self.inverse_mass * px,
+            vy + self.inverse_mass * py,
+            self.angular_velocity + self.inverse_inertia * cross(arm, Vec2(px, py)),
+        )
+        validate.in_range(self.world.precision, impulse=changed)
+        motion = self._motion
+        motion["vx"], motion["vy"], motion["w"] = changed
+
+    # --- inside -------------------------------------------------------------------------------------------------
+
+    def _lever(self, name: str, value: Pair, point: Pair | None) -> tuple[float, float, Vec2]:
+        """A checked vector, and the way from the centre of mass to where it acts."""
+        x, y = validate.vector(name, value)
+        center = self.position
+        if point is None:
+            return x, y, Vec2(0.0, 0.0)
+        px, py = validate.vector("point", point)
+        return x, y, Vec2(px, py) - center
+
+    def _check(self) -> None:
+        if not self.alive:
+            raise ValueError(f"body = Body {self.serial}: must be a living body, this one was destroyed")
+
+    @property
+    def _body(self) -> Any:
+        self._check()
+        return self.world._state.bodies.tables["bodies"][self._row]
+
+    @property
+    def _motion(self) -> Any:
+        self._check()
+        return self.world._state.bodies.tables["motions"][self._row]
+
+    def _movable(self, name: str, value: Any) -> Any:
+        if int(self._body["kind"]) != DYNAMIC:
+            raise validate.refuse(name, value, "left alone: the body is static")
+        return self._motion
+
+    def _turn(self) -> None:
+        """Takes sine and cosine afresh after the angle was set."""
+        tables = self.world._state.bodies.tables
+        turn_row(tables["bodies"], tables["motions"], self._row)

@@ -1,0 +1,5 @@
+"""What can go wrong beyond bad input."""
+
+
+class StepError(ArithmeticError):
+    """A step gave a state that is not finite; the message names the body and the stage."""

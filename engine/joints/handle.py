@@ -1,0 +1,96 @@
+"""Joints: the handle that a user holds."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from engine import validate
+from engine.vec2 import Vec2
+
+if TYPE_CHECKING:
+    from engine.bodies import Body
+    from engine.world import World
+
+
+class RevoluteJoint:
+    """A revolute joint of a world. Reading or changing one that was destroyed is a ValueError."""
+
+    __slots__ = ("__weakref__", "_row", "serial", "world")
+
+    def __init__(self, world: World, row: int, serial: int) -> None:
+        self.world = world
+        self.serial = serial  # number of creation among the joints, from 0, never given twice
+        self._row = row
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, RevoluteJoint) and other.world is self.world and other.serial == self.serial
+
+    def __hash__(self) -> int:
+        return hash((id(self.world), "joint", self.serial))
+
+    def __repr__(self) -> str:
+        return f"<RevoluteJoint {self.serial}{'' if self.alive else ', destroyed'}>"
+
+    @property
+    def alive(self) -> bool:
+        """Whether it is still in its world."""
+        return self.world._state.joints.holds(self._row, self.serial)
+
+    def destroy(self) -> None:
+        """Takes the joint out of the world."""
+        self._check()
+        self.world._destroy_joint(self._row)
+
+    @property
+    def body1(self) -> Body:
+        return self.world._body_in_row(int(self._joint["body1"]))
+
+    @property
+    def body2(self) -> Body:
+        return self.world._body_in_row(int(self._joint["body2"]))
+
+    @property
+    def impulse(self) -> Vec2:
+        """What the last step gave body2 through the joint, and body1 the other way [N s]."""
+        return Vec2(float(self._joint["impulse_x"]), float(self._joint["impulse_y"]))
+
+    @property
+    def anchors(self) -> tuple[Vec2, Vec2]:
+        """The anchor of body1 and that of body2, in the world [m]: one point if the joint holds."""
+        record = self.world.joint_records()
+        row = record[record["joint"] == self.serial][0]
+        return Vec2(float(row["x1"]), float(row["y1"])), Vec2(float(row["x2"]), float(row["y2"]))
+
+    @property
+    def softness(self) -> float:
+        """How far it gives way [1/kg]."""
+        return float(self._joint["softness"])
+
+    @softness.setter
+    def softness(self, value: float) -> None:
+        softness = validate.non_negative("softness", value)
+        validate.in_range(self.world.precision, softness=(softness,))
+        self._joint["softness"] = softness
+
+    @property
+    def bias_factor(self) -> float:
+        """Part of the separation that a step removes, 0 to 1."""
+        return float(self._joint["bias_factor"])
+
+    @bias_factor.setter
+    def bias_factor(self, value: float) -> None:
+        self._joint["bias_factor"] = validate.between("bias_factor", value, 0.0, 1.0)
+
+    @property
+    def collide_connected(self) -> bool:
+        """Whether its two bodies collide with each other."""
+        return bool(self._joint["collide_connected"])
+
+    def _check(self) -> None:
+        if not self.alive:
+            raise ValueError(f"joint = RevoluteJoint {self.serial}: must be a living joint, this one was destroyed")
+
+    @property
+    def _joint(self) -> Any:
+        self._check()
+        return self.world._state.joints.tables["joints"][self._row]

@@ -1,0 +1,103 @@
+"""The revolute joint: a point of body1 and a point of body2 stay together, as if pinned (talk: Joint).
+
+It removes the relative velocity of its two anchors, softly if asked:
+K P = bias - dv - softness P, K being the 2x2 matrix that turns an impulse into a change of dv (GDC 2006 slides,
+"Joints" and "soft constraints" of Box2D Lite).
+"""
+
+from __future__ import annotations
+
+from engine.jit import kernel
+from engine.lanes import const
+from engine.origin import center_of, origin_of
+from engine.vec2 import Vec2, rotate, spin
+
+
+@kernel
+def push(motion, r, impulse):
+    """Gives a body the impulse at r from its centre: the talk's velocity update."""
+    motion.vx += motion.inverse_mass * impulse.x
+    motion.vy += motion.inverse_mass * impulse.y
+    motion.w += motion.inverse_inertia * (r.x * impulse.y - r.y * impulse.x)
+
+
+@kernel
+def pull(motion, r, impulse):
+    """Gives a body the opposite impulse at r from its centre."""
+    motion.vx -= motion.inverse_mass * impulse.x
+    motion.vy -= motion.inverse_mass * impulse.y
+    motion.w -= motion.inverse_inertia * (r.x * impulse.y - r.y * impulse.x)
+
+
+@kernel
+def effective_mass(joint, motion1, motion2, r1, r2):
+    """Writes the inverse of K = (1/m1 + 1/m2) 1 - [r1]x 1/I1 [r1]x - [r2]x 1/I2 [r2]x, softened [kg]."""
+    i1 = motion1.inverse_inertia
+    i2 = motion2.inverse_inertia
+    free = motion1.inverse_mass + motion2.inverse_mass
+    k_xx = free + i1 * r1.y * r1.y + i2 * r2.y * r2.y + joint.softness
+    k_xy = -(i1 * r1.x * r1.y) - i2 * r2.x * r2.y
+    k_yy = free + i1 * r1.x * r1.x + i2 * r2.x * r2.x + joint.softness
+    inverse_determinant = const(1.0, k_xx) / (k_xx * k_yy - k_xy * k_xy)
+    joint.mass_xx = inverse_determinant * k_yy
+    joint.mass_xy = -inverse_determinant * k_xy
+    joint.mass_yy = inverse_determinant * k_xx
+
+
+@kernel
+def prepare(joints, order, bodies, motions, step):
+    """Turns the anchors, computes effective masses and biases, and starts from the impulses of the last step."""
+    for rank in range(len(order)):
+        joint = joints[order[rank]]
+        body1 = bodies[joint.body1]
+        body2 = bodies[joint.body2]
+        motion1 = motions[joint.body1]
+        motion2 = motions[joint.body2]
+        lane = motion1.vx
+        q1 = Vec2(motion1.cosine, motion1.sine)
+        q2 = Vec2(motion2.cosine, motion2.sine)
+        r1 = rotate(q1, Vec2(const(joint.anchor1_x, lane), const(joint.anchor1_y, lane)))
+        r2 = rotate(q2, Vec2(const(joint.anchor2_x, lane), const(joint.anchor2_y, lane)))
+        joint.r1_x = r1.x
+        joint.r1_y = r1.y
+        joint.r2_x = r2.x
+        joint.r2_y = r2.y
+        effective_mass(joint, motion1, motion2, r1, r2)
+
+        rate = const(0.0, lane)
+        if step.position_correction != 0:
+            rate = joint.bias_factor * step.inverse_dt
+        origin = origin_of(body1, lane)
+        apart = (center_of(body2, origin, lane) + r2) - (center_of(body1, origin, lane) + r1)
+        joint.bias_x = -rate * apart.x
+        joint.bias_y = -rate * apart.y
+        if step.warm_starting == 0:
+            joint.impulse_x = 0
+            joint.impulse_y = 0
+        impulse = Vec2(joint.impulse_x, joint.impulse_y)
+        pull(motion1, r1, impulse)
+        push(motion2, r2, impulse)
+
+
+@kernel
+def solve(joints, order, motions):
+    """One pass over the joints, each removing what is left of its anchors' relative velocity."""
+    for rank in range(len(order)):
+        joint = joints[order[rank]]
+        motion1 = motions[joint.body1]
+        motion2 = motions[joint.body2]
+        r1 = Vec2(joint.r1_x, joint.r1_y)
+        r2 = Vec2(joint.r2_x, joint.r2_y)
+        v1 = Vec2(motion1.vx, motion1.vy)
+        v2 = Vec2(motion2.vx, motion2.vy)
+        dv = v2 + spin(motion2.w, r2) - v1 - spin(motion1.w, r1)
+        wanted_x = joint.bias_x - dv.x - joint.softness * joint.impulse_x
+        wanted_y = joint.bias_y - dv.y - joint.softness * joint.impulse_y
+        impulse = Vec2(
+            joint.mass_xx * wanted_x + joint.mass_xy * wanted_y,
+            joint.mass_xy * wanted_x + joint.mass_yy * wanted_y,
+        )
+        pull(motion1, r1, impulse)
+        push(motion2, r2, impulse)
+        joint.impulse_x += impulse.x
+        joint.impulse_y += impulse.y

@@ -1,0 +1,94 @@
+"""Contacts and joints as the outside sees them: copies, in tables or one by one."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from engine.state import State
+from engine.tables import CONTACT_RECORD, JOINT_RECORD
+from engine.vec2 import Vec2
+
+if TYPE_CHECKING:
+    from engine.bodies import Body
+    from engine.world import World
+
+
+class Contact(NamedTuple):
+    """One contact point, as the last step left it."""
+
+    position: Vec2  # [m]
+    normal: Vec2  # unit, from body1 to body2
+    separation: float  # < 0: overlap [m]
+    normal_impulse: float  # accumulated P_n >= 0 [N s]
+    tangent_impulse: float  # accumulated P_t, along (normal.y, -normal.x) [N s]
+    feature: int  # which edges meet, see narrow_phase/clip.py
+
+
+class Arbiter(NamedTuple):
+    """The contact points between two bodies; body1 is the one created first."""
+
+    body1: Body
+    body2: Body
+    friction: float  # of the pair
+    contacts: tuple[Contact, ...]
+
+
+def contact_records(state: State) -> np.ndarray:
+    """(C,) CONTACT_RECORD: all contacts of the last step, in the solver's order."""
+    table = state.arbiters
+    arbiters = table.rows[: table.count]
+    which, number = np.nonzero(np.arange(2) < arbiters["count"][:, None])
+    records = np.zeros(len(which), CONTACT_RECORD)
+    records["body1"] = arbiters["serial1"][which]
+    records["body2"] = arbiters["serial2"][which]
+    records["nx"] = arbiters["nx"][which]
+    records["ny"] = arbiters["ny"][which]
+    contacts = table.contacts[which, number]
+    for name in ("feature", "x", "y", "separation", "normal_impulse", "tangent_impulse"):
+        records[name] = contacts[name]
+    return records
+
+
+def joint_records(state: State) -> np.ndarray:
+    """(J,) JOINT_RECORD: all joints in the order of creation, anchors where the bodies are now."""
+    bodies, motions = state.bodies.tables["bodies"], state.bodies.tables["motions"]
+    joints = state.joints.tables["joints"][state.joints.order]
+    records = np.zeros(len(joints), JOINT_RECORD)
+    records["joint"] = joints["serial"]
+    for number in ("1", "2"):
+        rows = joints["body" + number]
+        body, c, s = bodies[rows], motions["cosine"][rows], motions["sine"][rows]
+        x, y = joints[f"anchor{number}_x"], joints[f"anchor{number}_y"]
+        records["body" + number] = body["serial"]
+        records["x" + number] = body["x"] + (c * x - s * y)
+        records["y" + number] = body["y"] + (s * x + c * y)
+    records["impulse_x"] = joints["impulse_x"]
+    records["impulse_y"] = joints["impulse_y"]
+    return records
+
+
+def arbiter_list(world: World) -> list[Arbiter]:
+    """The arbiters of the last step, in the solver's order: by the order of creation of body1, then of body2."""
+    state = world._state
+    result = []
+    for arbiter, contacts in zip(
+        state.arbiters.rows[: state.arbiters.count], state.arbiters.contacts[: state.arbiters.count], strict=True
+    ):
+        normal = Vec2(float(arbiter["nx"]), float(arbiter["ny"]))
+        points = tuple(
+            Contact(
+                Vec2(float(contact["x"]), float(contact["y"])),
+                normal,
+                float(contact["separation"]),
+                float(contact["normal_impulse"]),
+                float(contact["tangent_impulse"]),
+                int(contact["feature"]),
+            )
+            for contact in contacts[: int(arbiter["count"])]
+        )
+        body1 = world._body_in_row(int(arbiter["body1"]))
+        body2 = world._body_in_row(int(arbiter["body2"]))
+        result.append(Arbiter(body1, body2, float(arbiter["friction"]), points))
+    return result

@@ -1,0 +1,63 @@
+"""A circle: the talk's first exercise."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from engine.constants import BOUNDS_MARGIN, BOUNDS_MARGIN_RELATIVE
+from engine.jit import kernel
+from engine.lanes import absolute
+from engine.validate import positive
+
+CIRCLE = 1
+
+
+@dataclass(frozen=True)
+class Circle:
+    """A disc of `radius` [m] about the body's centre."""
+
+    radius: float
+
+    name = "circle"
+    kind = CIRCLE
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "radius", positive("radius", self.radius))
+
+    @property
+    def area(self) -> float:
+        """[m^2]"""
+        return math.pi * self.radius * self.radius
+
+    def inertia(self, mass: float) -> float:
+        """Moment of inertia about the centre, m r^2 / 2 [kg m^2]."""
+        return 0.5 * mass * self.radius * self.radius
+
+    @property
+    def half_extents(self) -> tuple[float, float]:
+        """What the body table keeps of it [m]."""
+        return self.radius, 0.0
+
+    @staticmethod
+    def from_half_extents(half_x: float, half_y: float) -> Circle:
+        return Circle(half_x)
+
+    @staticmethod
+    def contains(x: float, y: float, half_x: float, half_y: float) -> bool:
+        """Whether a point in the body's frame lies in the disc."""
+        return math.hypot(x, y) <= half_x
+
+
+@kernel
+def circle_bounds(order, bodies, motions, bounds):
+    """Writes the bounding boxes of all circle bodies: bounds (4, N) float32, as box_bounds does."""
+    for rank in range(len(order)):
+        body = bodies[order[rank]]
+        if body.shape_kind == CIRCLE:
+            reach_x = body.half_x + BOUNDS_MARGIN + BOUNDS_MARGIN_RELATIVE * absolute(body.x)
+            reach_y = body.half_x + BOUNDS_MARGIN + BOUNDS_MARGIN_RELATIVE * absolute(body.y)
+            bounds[0, rank] = body.x - reach_x
+            bounds[1, rank] = body.y - reach_y
+            bounds[2, rank] = body.x + reach_x
+            bounds[3, rank] = body.y + reach_y

@@ -1,0 +1,84 @@
+"""Snapshots: a copy of all tables, as an object and as bytes. And the hash of what physics means."""
+
+from __future__ import annotations
+
+import hashlib
+import io
+import json
+import zipfile
+from dataclasses import dataclass
+
+import numpy as np
+
+from engine.records import contact_records, joint_records
+from engine.settings import Settings
+from engine.state import State
+
+MAGIC = b"tumble snapshot 1\n"
+
+
+@dataclass(frozen=True, eq=False)
+class Snapshot:
+    """Everything a later step depends on: tables and settings. World.restore takes it back, in any world."""
+
+    settings: Settings
+    tables: dict[str, np.ndarray]
+
+    def to_bytes(self) -> bytes:
+        """A self-contained file: a line of magic, a checksum, then numpy's own format."""
+        stream = io.BytesIO()
+        settings = np.frombuffer(json.dumps(self.settings.to_dict()).encode(), np.uint8)
+        np.savez(stream, allow_pickle=False, settings=settings, **self.tables)
+        body = stream.getvalue()
+        return MAGIC + hashlib.sha256(body).digest() + body
+
+    @classmethod
+    def from_bytes(cls, data: bytes) -> Snapshot:
+        """What `to_bytes` gave. ValueError if it is something else or damaged."""
+        start = len(MAGIC) + hashlib.sha256().digest_size
+        if data[: len(MAGIC)] != MAGIC:
+            raise ValueError("snapshot: must be one that tumble wrote")
+        if hashlib.sha256(data[start:]).digest() != data[len(MAGIC) : start]:
+            raise ValueError("snapshot: must be whole, this one is damaged")
+        try:
+            with np.load(io.BytesIO(data[start:]), allow_pickle=False) as stored:
+                tables = {name: stored[name] for name in stored.files}
+            settings = Settings.from_dict(json.loads(tables.pop("settings").tobytes()))
+        except (KeyError, TypeError, ValueError, zipfile.BadZipFile) as error:
+            raise ValueError(f"snapshot: must be one of this version of tumble ({error})") from None
+        return cls(settings, tables)
+
+
+def state_hash(state: State) -> str:
+    """64 hex digits over what physics means; equal for equal futures, whatever the capacity, padding or serials.
+
+    In the order of creation: bodies' position, angle, velocity and sleep state, then the accumulated impulses of
+    contacts and of joints, with their keys. -0.0 counts as 0.0.
+    """
+    order = state.bodies.order
+    bodies = state.bodies.tables["bodies"][order]
+    motions = state.bodies.tables["motions"][order]
+    serials = bodies["serial"]
+    digest = hashlib.sha256()
+
+    def add(values: np.ndarray, dtype: str) -> None:
+        # adding zero turns -0.0 into 0.0; little-endian whatever the machine
+        digest.update(np.ascontiguousarray(values + np.zeros((), values.dtype), dtype).tobytes())
+
+    add(np.array([len(order)]), "<i8")
+    for table, names in ((bodies, ("x", "y", "angle")), (motions, ("vx", "vy", "w"))):
+        for name in names:
+            add(table[name], "<f8")
+    add(np.zeros(len(order)), "<f8")  # asleep: no body sleeps yet
+    contacts = contact_records(state)
+    joints = joint_records(state)
+    for records, key, impulses in (
+        (contacts, contacts["feature"], ("normal_impulse", "tangent_impulse")),
+        (joints, np.arange(len(joints)), ("impulse_x", "impulse_y")),
+    ):
+        add(np.searchsorted(serials, records["body1"]), "<i8")
+        add(np.searchsorted(serials, records["body2"]), "<i8")
+        add(key, "<i8")
+        for name in impulses:
+            add(records[name], "<f8")
+    return digest.hexdigest()

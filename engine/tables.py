@@ -1,0 +1,188 @@
+"""Every state table: one structured dtype each, one row a body, arbiter, contact or joint.
+
+Lengths in metres, time in seconds, mass in kilograms, angles in radians. `real` is the solver's own number: float32
+("single") or float64 ("double"). Positions, angles and what describes a body are always float64. A snapshot is a copy
+of these tables, so whatever a later step depends on must stand in one of them.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numba
+import numpy as np
+
+BODY_KINDS = ("static", "dynamic")
+STATIC, DYNAMIC = range(2)
+
+REALS = {"single": np.dtype(np.float32), "double": np.dtype(np.float64)}
+
+BODY = np.dtype(
+    [
+        ("serial", np.int64),  # number of creation, from 0, never given twice; -1: no body in this row
+        ("x", np.float64),  # position of the centre of mass [m]
+        ("y", np.float64),
+        ("angle", np.float64),  # unwrapped [rad]
+        ("force_x", np.float64),  # set by the user, used up by the next step [N]
+        ("force_y", np.float64),
+        ("torque", np.float64),  # [N m]
+        ("mass", np.float64),  # [kg], infinite for a static body
+        ("inertia", np.float64),  # about the centre of mass [kg m^2], infinite for a static body
+        ("friction", np.float64),  # coefficient, >= 0
+        ("half_x", np.float64),  # box: half its width; circle: its radius [m]
+        ("half_y", np.float64),  # box: half its height; circle: 0 [m]
+        ("kind", np.int64),  # index into BODY_KINDS
+        ("shape_kind", np.int64),  # index into SHAPE_KINDS
+    ]
+)
+
+CONTACT_RECORD = np.dtype(
+    [
+        ("body1", np.int64),  # serials of the two bodies, body1 the one created first
+        ("body2", np.int64),
+        ("feature", np.int32),  # which edges meet: what recognises the contact in the next step
+        ("x", np.float64),  # position [m]
+        ("y", np.float64),
+        ("nx", np.float64),  # unit normal, from body1 to body2
+        ("ny", np.float64),
+        ("separation", np.float64),  # < 0: overlap [m]
+        ("normal_impulse", np.float64),  # accumulated [N s]
+        ("tangent_impulse", np.float64),  # accumulated, along (ny, -nx) [N s]
+    ]
+)
+"""A contact as the outside sees it: a copy, one row a contact, in the solver's order."""
+
+JOINT_RECORD = np.dtype(
+    [
+        ("joint", np.int64),  # serial of the joint
+        ("body1", np.int64),  # serials of its bodies
+        ("body2", np.int64),
+        ("x1", np.float64),  # anchor on body1, in the world [m]
+        ("y1", np.float64),
+        ("x2", np.float64),  # anchor on body2, in the world [m]
+        ("y2", np.float64),
+        ("impulse_x", np.float64),  # accumulated, on body2 [N s]
+        ("impulse_y", np.float64),
+    ]
+)
+"""A joint as the outside sees it: a copy, one row a joint, in the order of creation."""
+
+
+@cache
+def motion_dtype(precision: str) -> np.dtype:
+    """What the solver reads and writes of a body, and nothing else: one row of eight numbers, same row as in BODY."""
+    real = REALS[precision]
+    return np.dtype(
+        [
+            ("vx", real),  # velocity of the centre of mass [m/s]
+            ("vy", real),
+            ("w", real),  # angular velocity [rad/s]
+            ("inverse_mass", real),  # [1/kg], 0 for a static body
+            ("inverse_inertia", real),  # [1/(kg m^2)], 0 for a static body
+            ("cosine", real),  # of the body's angle: made whenever the angle changes
+            ("sine", real),
+            ("spare", real),  # eight numbers a row: 32 or 64 bytes
+        ]
+    )
+
+
+@cache
+def arbiter_dtype(precision: str) -> np.dtype:
+    """The contacts between two bodies: what they share."""
+    real = REALS[precision]
+    return np.dtype(
+        [
+            ("serial1", np.int64),  # serials of the bodies, serial1 < serial2: the arbiter's key and its order
+            ("serial2", np.int64),
+            ("body1", np.int32),  # rows of the bodies
+            ("body2", np.int32),
+            ("count", np.int32),  # contacts, 0 to 2
+            ("nx", real),  # unit normal, from body1 to body2
+            ("ny", real),
+            ("friction", real),  # of the pair: sqrt(friction1 friction2)
+        ]
+    )
+
+
+@cache
+def contact_dtype(precision: str) -> np.dtype:
+    """One contact point; an arbiter's two stand in one row of a (arbiters, 2) table."""
+    real = REALS[precision]
+    return np.dtype(
+        [
+            ("x", np.float64),  # position when it was found [m]
+            ("y", np.float64),
+            ("feature", np.int32),  # which edges meet, see narrow_phase/clip.py
+            ("r1_x", real),  # position relative to the centres of body1 and body2 [m]
+            ("r1_y", real),
+            ("r2_x", real),
+            ("r2_y", real),
+            ("separation", real),  # < 0: overlap [m]
+            ("normal_impulse", real),  # P_n, accumulated [N s]
+            ("tangent_impulse", real),  # P_t, accumulated [N s]
+            ("normal_mass", real),  # effective mass along the normal [kg]
+            ("tangent_mass", real),  # and along the tangent [kg]
+            ("normal_arm1", real),  # r1 x n: how an impulse along the normal turns body1 [m]
+            ("normal_arm2", real),
+            ("tangent_arm1", real),  # r1 x t [m]
+            ("tangent_arm2", real),
+            ("bias", real),  # velocity that removes overlap [m/s]
+        ]
+    )
+
+
+@cache
+def revolute_dtype(precision: str) -> np.dtype:
+    """A revolute joint: a point of body1 and a point of body2 stay together."""
+    real = REALS[precision]
+    return np.dtype(
+        [
+            ("serial", np.int64),  # number of creation among the joints; -1: no joint in this row
+            ("body1", np.int64),  # rows of the bodies
+            ("body2", np.int64),
+            ("anchor1_x", np.float64),  # anchor in the frame of body1 [m]
+            ("anchor1_y", np.float64),
+            ("anchor2_x", np.float64),  # anchor in the frame of body2 [m]
+            ("anchor2_y", np.float64),
+            ("softness", real),  # how far it gives way [1/kg]: 0 is rigid
+            ("bias_factor", real),  # part of the separation that a step removes
+            ("collide_connected", np.int64),  # 1: its bodies collide with each other
+            ("r1_x", real),  # anchors relative to the centres, turned into the world [m]
+            ("r1_y", real),
+            ("r2_x", real),
+            ("r2_y", real),
+            ("mass_xx", real),  # effective mass, a symmetric matrix [kg]
+            ("mass_xy", real),
+            ("mass_yy", real),
+            ("bias_x", real),  # velocity that removes the separation [m/s]
+            ("bias_y", real),
+            ("impulse_x", real),  # accumulated, on body2 [N s]
+            ("impulse_y", real),
+        ]
+    )
+
+
+@cache
+def step_dtype(precision: str) -> np.dtype:
+    """What holds for a whole step: one row, so that a kernel takes it as one argument."""
+    real = REALS[precision]
+    return np.dtype(
+        [
+            ("dt", real),  # time step [s]
+            ("inverse_dt", real),  # [1/s]
+            ("gravity_x", real),  # [m/s^2]
+            ("gravity_y", real),
+            ("bias_factor", real),  # of contacts; 0 while position correction is off
+            ("slop", real),  # [m]
+            ("iterations", np.int64),
+            ("accumulate_impulses", np.int64),  # the talk's three switches, 0 or 1
+            ("warm_starting", np.int64),
+            ("position_correction", np.int64),
+        ]
+    )
+
+
+def empty(count: int | tuple[int, ...], dtype: np.dtype) -> np.ndarray:
+    """A table of zeros. Without compilation a row must give its fields by attribute, which a recarray's does."""
+    table = np.zeros(count, dtype)
+    return table.view(np.recarray) if numba.config.DISABLE_JIT else table
