@@ -119,6 +119,12 @@ class Body:
     rotation = angle  # the talk's word for it
 
     @property
+    def direction(self) -> Vec2:
+        """Cosine and sine of the angle, the same on every machine; coarser in single precision."""
+        motion = self._motion
+        return Vec2(float(motion["cosine"]), float(motion["sine"]))
+
+    @property
     def velocity(self) -> Vec2:
         """Of the centre of mass [m/s]."""
         return Vec2(float(self._motion["vx"]), float(self._motion["vy"]))
@@ -148,8 +154,10 @@ class Body:
 
     @force.setter
     def force(self, value: Pair) -> None:
+        force = validate.vector("force", value)
+        validate.in_range(self.world.precision, force=force)
         body = self._body
-        body["force_x"], body["force_y"] = validate.vector("force", value)
+        body["force_x"], body["force_y"] = force
 
     @property
     def torque(self) -> float:
@@ -158,14 +166,15 @@ class Body:
 
     @torque.setter
     def torque(self, value: float) -> None:
-        self._body["torque"] = validate.number("torque", value)
+        torque = validate.number("torque", value)
+        validate.in_range(self.world.precision, torque=(torque,))
+        self._body["torque"] = torque
 
     def contains(self, point: Pair) -> bool:
         """Whether a point of the world [m] lies in the body."""
         x, y = validate.vector("point", point)
-        body, motion = self._body, self._motion
-        q = Vec2(float(motion["cosine"]), float(motion["sine"]))
-        local = unrotate(q, Vec2(x, y) - self.position)
+        body = self._body
+        local = unrotate(self.direction, Vec2(x, y) - self.position)
         shape = SHAPES[int(body["shape_kind"])]
         return shape.contains(local.x, local.y, float(body["half_x"]), float(body["half_y"]))
 

@@ -34,8 +34,9 @@ half width. Without: two equally good faces alternate from step to step and thei
 
 BOUNDS_MARGIN = 1e-3
 BOUNDS_MARGIN_RELATIVE = 2.0**-22
-"""Bounding boxes are float32 and grown by this [m] plus this part of their coordinates, so that rounding never
-parts a pair that touches, at any distance from the origin. Too small: contacts of bodies that just touch are missed."""
+"""Bounding boxes are float32 and grown by this [m] plus this part of their coordinates and of their size, so that
+rounding never parts a pair that touches, at any distance from the origin. Too small: contacts of bodies that just touch
+are missed."""
 
 # --- defaults of what a user may set ------------------------------------------------------------------------------
 

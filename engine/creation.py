@@ -61,11 +61,12 @@ def add_body(
     friction = validate.non_negative("friction", friction)
     vx, vy = validate.vector("velocity", velocity)
     w = validate.number("angular_velocity", angular_velocity)
+    half_x, half_y = shape.half_extents
+    validate.in_range(world.precision, shape=(half_x, half_y))
     validate.in_range(world.precision, velocity=(vx, vy), angular_velocity=(w,), friction=(friction,))
     if kind == "static" and (vx != 0.0 or vy != 0.0 or w != 0.0):
         raise validate.refuse("velocity", (vx, vy, w), "zero for a static body")
     mass, inertia, inverse_mass, inverse_inertia = mass_properties(shape, kind, mass, density, world.precision)
-    half_x, half_y = shape.half_extents
 
     storage = world._state.bodies
     row = storage.add()

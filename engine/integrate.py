@@ -55,6 +55,6 @@ def update_positions(order, bodies, motions, steps):
             body.force_y = 0.0
             body.torque = 0.0
             turn(body, motion)
-            if lost < 0 and not np.isfinite(body.x + body.y + body.angle):
+            if lost < 0 and not (np.isfinite(body.x) and np.isfinite(body.y) and np.isfinite(body.angle)):
                 lost = rank
     return lost

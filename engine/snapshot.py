@@ -36,7 +36,7 @@ class Snapshot:
     def from_bytes(cls, data: bytes) -> Snapshot:
         """What `to_bytes` gave. ValueError if it is something else or damaged."""
         start = len(MAGIC) + hashlib.sha256().digest_size
-        if data[: len(MAGIC)] != MAGIC:
+        if not isinstance(data, (bytes, bytearray)) or data[: len(MAGIC)] != MAGIC:
             raise ValueError("snapshot: must be one that tumble wrote")
         if hashlib.sha256(data[start:]).digest() != data[len(MAGIC) : start]:
             raise ValueError("snapshot: must be whole, this one is damaged")

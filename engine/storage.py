@@ -76,6 +76,8 @@ class Storage:
 
     def find(self, serial: int) -> int:
         """The row of a serial, -1 if there is none."""
+        if serial < 0:
+            return -1
         rows = np.flatnonzero(self.tables[self.main]["serial"][: self._used] == serial)
         return int(rows[0]) if len(rows) else -1
 

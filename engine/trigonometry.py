@@ -20,6 +20,7 @@ HALF_PI_2 = float.fromhex("0x1.0b4611a6p-34")
 HALF_PI_3 = float.fromhex("0x1.3198a2e037073p-69")
 TWO_OVER_PI = 2.0 / math.pi
 QUARTER_PI = math.pi / 4.0
+LARGEST_TAIL = 2.0**-53
 
 # Taylor coefficients; on |r| <= pi/4 the first term left out is below 1e-19 for the sine and 4e-18 for the cosine.
 S3, S5, S7, S9, S11, S13, S15, S17 = ((-1.0) ** k / math.factorial(2 * k + 1) for k in range(1, 9))
@@ -39,7 +40,9 @@ def reduce_angle(angle):
     rest = quarters * HALF_PI_3 - ((first - rough) - second)
     r = rough - rest
     tail = (rough - r) - rest
-    r = maximum(-QUARTER_PI, minimum(QUARTER_PI, r))  # holds only beyond 1e6 rad, where r is no longer exact
+    # these bite only beyond 1e6 rad, where neither is exact any longer
+    r = maximum(-QUARTER_PI, minimum(QUARTER_PI, r))
+    tail = maximum(-LARGEST_TAIL, minimum(LARGEST_TAIL, tail))
     quadrant = quarters - 4.0 * np.floor(quarters * 0.25)
     return quadrant, r, tail
 

@@ -14,7 +14,10 @@ from engine.tables import REALS
 
 def refuse(name: str, value: Any, allowed: str) -> ValueError:
     """The error to raise for a bad argument."""
-    shown = repr(value)
+    try:
+        shown = repr(value)
+    except ValueError:  # Python writes out no integer of more than 4300 digits
+        shown = f"an integer of {value.bit_length()} bits" if isinstance(value, int) else "a value that has no text"
     return ValueError(f"{name} = {shown[:80]}{'...' if len(shown) > 80 else ''}: must be {allowed}")
 
 
@@ -73,7 +76,10 @@ def vector(name: str, value: Any) -> tuple[float, float]:
     allowed = "two finite numbers (x, y)"
     if isinstance(value, (str, bytes)) or not isinstance(value, Iterable):
         raise refuse(name, value, allowed)
-    parts = list(value)
+    try:
+        parts = list(value)
+    except TypeError:  # a numpy array without dimensions
+        raise refuse(name, value, allowed) from None
     if len(parts) != 2:
         raise refuse(name, value, allowed)
     try:

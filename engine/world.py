@@ -220,6 +220,11 @@ class World(Configured):
                 return body
         return None
 
+    def find_body(self, serial: int) -> Body | None:
+        """The living body of that serial."""
+        row = self._state.bodies.find(serial)
+        return None if row < 0 else self._body_in_row(row)
+
     def diagnostics(self) -> Diagnostics:
         """Energy [J], momentum, deepest overlap [m] and number of contacts."""
         return diagnose(self._state, self._settings.gravity)
@@ -251,7 +256,7 @@ class World(Configured):
     def _body_in_row(self, row: int) -> Body:
         serial = int(self._state.bodies.tables["bodies"]["serial"][row])
         body = self._handles.get(serial)
-        if body is None:
+        if body is None or body._row != row:  # a restored snapshot of another world may have it in another row
             body = Body(self, row, serial)
             self._handles[serial] = body
         return body

@@ -57,6 +57,7 @@ class RevoluteJoint:
     @property
     def anchors(self) -> tuple[Vec2, Vec2]:
         """The anchor of body1 and that of body2, in the world [m]: one point if the joint holds."""
+        self._check()
         record = self.world.joint_records()
         row = record[record["joint"] == self.serial][0]
         return Vec2(float(row["x1"]), float(row["y1"])), Vec2(float(row["x2"]), float(row["y2"]))

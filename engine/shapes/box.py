@@ -60,10 +60,10 @@ def box_bounds(order, bodies, motions, bounds):
             motion = motions[row]
             c = absolute(motion.cosine)
             s = absolute(motion.sine)
-            margin_x = BOUNDS_MARGIN + BOUNDS_MARGIN_RELATIVE * absolute(body.x)
-            margin_y = BOUNDS_MARGIN + BOUNDS_MARGIN_RELATIVE * absolute(body.y)
-            reach_x = c * body.half_x + s * body.half_y + margin_x
-            reach_y = s * body.half_x + c * body.half_y + margin_y
+            reach_x = c * body.half_x + s * body.half_y
+            reach_y = s * body.half_x + c * body.half_y
+            reach_x += BOUNDS_MARGIN + BOUNDS_MARGIN_RELATIVE * (absolute(body.x) + reach_x)
+            reach_y += BOUNDS_MARGIN + BOUNDS_MARGIN_RELATIVE * (absolute(body.y) + reach_y)
             bounds[0, rank] = body.x - reach_x
             bounds[1, rank] = body.y - reach_y
             bounds[2, rank] = body.x + reach_x

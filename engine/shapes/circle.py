@@ -55,8 +55,9 @@ def circle_bounds(order, bodies, motions, bounds):
     for rank in range(len(order)):
         body = bodies[order[rank]]
         if body.shape_kind == CIRCLE:
-            reach_x = body.half_x + BOUNDS_MARGIN + BOUNDS_MARGIN_RELATIVE * absolute(body.x)
-            reach_y = body.half_x + BOUNDS_MARGIN + BOUNDS_MARGIN_RELATIVE * absolute(body.y)
+            radius = body.half_x
+            reach_x = radius + BOUNDS_MARGIN + BOUNDS_MARGIN_RELATIVE * (absolute(body.x) + radius)
+            reach_y = radius + BOUNDS_MARGIN + BOUNDS_MARGIN_RELATIVE * (absolute(body.y) + radius)
             bounds[0, rank] = body.x - reach_x
             bounds[1, rank] = body.y - reach_y
             bounds[2, rank] = body.x + reach_x

@@ -1,0 +1,67 @@
+"""How a scene is made known: `@scene("Folder/Name")` above a function that fills a world."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from engine import Settings, World
+
+Build = Callable[[World], None]
+View = tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class Scene:
+    """A world's beginning. `build` fills an empty world; `summary` is the first line of its docstring."""
+
+    name: str
+    build: Build
+    summary: str
+    view: View  # what to look at: centre x, centre y, height [m]
+    settings: Mapping[str, Any] = field(default_factory=dict)  # where it departs from a world's defaults
+
+    def make(self, **settings: Any) -> World:
+        """A world with this scene in it; settings win over the scene's own."""
+        world = World(**{**self.settings, **settings})
+        self.build(world)
+        return world
+
+    def defaults(self) -> Settings:
+        """The settings that it asks for."""
+        return Settings(**self.settings)
+
+
+SCENES: dict[str, Scene] = {}
+
+
+class UnknownScene(ValueError):
+    """There is no scene of that name; the message says which come close."""
+
+
+def scene(name: str, *, view: View = (0.0, 7.0, 20.0), **settings: Any) -> Callable[[Build], Build]:
+    """Registers the function below as a scene. view: centre x, y and height of what to look at [m]."""
+
+    def register(build: Build) -> Build:
+        if name in SCENES:
+            raise ValueError(f"name = {name!r}: must be a scene's name that is not taken yet")
+        summary = (build.__doc__ or "").strip().split("\n")[0]
+        SCENES[name] = Scene(name, build, summary, view, settings)
+        return build
+
+    return register
+
+
+def find_scene(name: str) -> Scene:
+    """The scene of that name, by its full name or, whatever the case, by the part after the folder."""
+    if name in SCENES:
+        return SCENES[name]
+    wanted = name.casefold()
+    matches = [s for s in SCENES.values() if wanted in (s.name.casefold(), s.name.casefold().split("/")[-1])]
+    if len(matches) == 1:
+        return matches[0]
+    close = difflib.get_close_matches(name, SCENES, n=3, cutoff=0.4)
+    hint = f"; did you mean {' or '.join(repr(c) for c in close)}? " if close else ""
+    raise UnknownScene(f"there is no scene {name!r}{hint or '; '}`tumble scenes` lists all")
