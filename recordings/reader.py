@@ -1,0 +1,123 @@
+"""Gives a recording back bit for bit, also one that a kill left behind."""
+
+from __future__ import annotations
+
+import json
+from collections import defaultdict
+from pathlib import Path
+
+import numpy as np
+import pyarrow as pa
+
+from recordings import schema
+from recordings.recording import Recording, contiguous
+from recordings.rrd import Chunk, read_chunks
+from recordings.schema import RecordingError
+from recordings.shot import checksum
+from recordings.start import parse_start
+from recordings.stored_table import StoredTable, gather
+
+
+def read(path: Path | str) -> Recording:
+    """Reads a recording and checks every step of it.
+
+    A file cut short, by a kill or a full disk, gives the steps up to the last whole block.
+
+    Raises:
+        RecordingError: the file is missing, no recording of tumble, too new, or damaged. The message is one line.
+    """
+    path = Path(path)
+    chunks = _chunks_by_path(path)
+    start, snapshot = parse_start(path, chunks[schema.START])
+    commands = _commands(path, chunks[schema.COMMANDS])
+    tables = {table.path: gather(path, table, chunks[table.path]) for table in schema.TABLES}
+    stored_steps = _whole_steps(path, tables, start["step"])
+    _check_end(path, chunks[schema.END], stored_steps)
+    _check_steps(path, tables, commands)
+    numbers = tables[schema.STEPS.path].rows[1:]
+    return Recording(
+        path=path,
+        scene=start["scene"],
+        version=start["version"],
+        dt=start["dt"],
+        start_step=start["step"],
+        start_time=start["time"],
+        settings=start["settings"],
+        hands=start["hands"],
+        view=tuple(start["view"]),
+        snapshot=snapshot,
+        steps=contiguous(stored_steps[1:]),
+        times=contiguous(numbers["time"]),
+        diagnostics=numbers,
+        commands={step: [json.loads(text) for text in texts] for step, texts in commands.items()},
+        _tables=tables,
+    )
+
+
+def _chunks_by_path(path: Path) -> dict[str, list[Chunk]]:
+    """The chunks under /state."""
+    chunks: dict[str, list[Chunk]] = defaultdict(list)
+    try:
+        for chunk in read_chunks(path, schema.APPLICATION):
+            if chunk.path.startswith("/state/"):
+                chunks[chunk.path].append(chunk)
+    except FileNotFoundError:
+        raise RecordingError(f"{path}: no such file") from None
+    except IsADirectoryError:
+        raise RecordingError(f"{path}: a folder, not a recording") from None
+    except OSError as error:
+        raise RecordingError(f"{path}: cannot be read: {error.strerror}") from error
+    return chunks
+
+
+def _commands(path: Path, chunks: list[Chunk]) -> dict[int, list[str]]:
+    """The JSON texts of each step that has some."""
+    commands: dict[int, list[str]] = {}
+    try:
+        for chunk in chunks:
+            steps = chunk.batch.column(schema.STEP_TIMELINE).to_pylist()
+            commands.update(zip(steps, chunk.batch.column(schema.COMMANDS_TEXT).to_pylist(), strict=True))
+    except (KeyError, ValueError, pa.ArrowException) as error:
+        raise RecordingError(f"{path}: damaged in its commands") from error
+    return commands
+
+
+def _whole_steps(path: Path, tables: dict[str, StoredTable], start_step: int) -> np.ndarray:
+    """The steps that every table has; the rest, which a kill cut off, is dropped from the tables."""
+    counts = []
+    for table in schema.EVERY_STEP:
+        steps = tables[table.path].steps
+        if not np.array_equal(steps, np.arange(start_step, start_step + len(steps))):
+            raise RecordingError(f"{path}: damaged: steps are missing in {table.path}")
+        counts.append(len(steps))
+    for table in schema.EVERY_STEP:
+        tables[table.path] = tables[table.path].first(min(counts))
+    return tables[schema.STEPS.path].steps
+
+
+def _check_end(path: Path, chunks: list[Chunk], steps: np.ndarray) -> None:
+    """A recording that was closed knows its last step."""
+    for chunk in chunks:
+        try:
+            last = chunk.batch.column(schema.END_STEP)[0][0].as_py()
+        except (KeyError, IndexError, TypeError, pa.ArrowException) as error:
+            raise RecordingError(f"{path}: damaged at its end") from error
+        if not len(steps) or steps[-1] != last:
+            raise RecordingError(f"{path}: damaged: its last steps are missing")
+
+
+def _check_steps(path: Path, tables: dict[str, StoredTable], commands: dict[int, list[str]]) -> None:
+    """Compares each step's checksum with its content, and drops the commands of steps that were cut off."""
+    steps = tables[schema.STEPS.path].steps
+    for step in [step for step in commands if not len(steps) or step > steps[-1]]:
+        del commands[step]
+    for step in map(int, steps):
+        parts = [tables[table.path].at(step) for table in schema.TABLES]
+        numbers = parts[3].copy()
+        if len(numbers) != 1 or len(parts[0]) != len(parts[4]):
+            raise RecordingError(f"{path}: damaged at step {step}")
+        expected = int(numbers["checksum"][0])
+        numbers["checksum"] = 0
+        parts[3] = numbers
+        if checksum(step, parts, commands.get(step, [])) != expected:
+            raise RecordingError(f"{path}: damaged at step {step}")

@@ -1,0 +1,93 @@
+"""A recording in memory: what `read` gives."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from recordings import schema
+from recordings.stored_table import StoredTable
+
+
+@dataclass(frozen=True, slots=True)
+class State:
+    """One recorded step. N bodies in the order of creation; every array is read-only."""
+
+    step: int
+    time: float  # [s]
+    dt: float  # [s]
+    serials: np.ndarray  # (N,) int64
+    body_kinds: np.ndarray  # (N,) uint8, index into engine.BODY_KINDS
+    shape_kinds: np.ndarray  # (N,) uint8, index into engine.SHAPE_KINDS
+    sizes: np.ndarray  # (N, 2) float64 [m]
+    positions: np.ndarray  # (N, 2) float64 [m]
+    angles: np.ndarray  # (N,) float64 [rad]
+    velocities: np.ndarray  # (N, 2) float64 [m/s]
+    angular_velocities: np.ndarray  # (N,) float64 [rad/s]
+    contacts: np.ndarray  # (C,) engine.CONTACT_RECORD
+    joints: np.ndarray  # (J,) engine.JOINT_RECORD
+
+
+@dataclass(frozen=True)
+class Recording:
+    """A recording in memory. K steps were computed after the start, numbered from `start_step + 1`."""
+
+    path: Path
+    scene: str
+    version: str  # of the tumble that wrote it
+    dt: float  # [s], at the start
+    start_step: int
+    start_time: float  # [s]
+    settings: dict[str, Any]  # at the start
+    hands: dict[str, Any]  # at the start
+    view: tuple[float, float, float]  # centre x, y and height of what the camera shows [m]
+    snapshot: bytes  # the world at the start
+    steps: np.ndarray  # (K,) int64
+    times: np.ndarray  # (K,) float64 [s]
+    diagnostics: np.ndarray  # (K,) the fields of schema.STEPS
+    commands: dict[int, list[dict[str, Any]]]  # step -> what was applied just before it
+    _tables: dict[str, StoredTable]  # by path
+
+    def holds(self, step: int) -> bool:
+        """Whether a step's state is there. A kill right at the beginning can leave not even that of the start."""
+        held = self._tables[schema.STEPS.path].steps
+        return bool(len(held) and held[0] <= step <= held[-1])
+
+    def state(self, step: int) -> State:
+        """The state after a step; that of the start too.
+
+        Raises:
+            ValueError: the step is not in the recording.
+        """
+        if not self.holds(step):
+            held = self._tables[schema.STEPS.path].steps
+            described = f"{held[0]} to {held[-1]}" if len(held) else "none"
+            raise ValueError(f"step {step} is not in {self.path}; its steps: {described}")
+        numbers = self._tables[schema.STEPS.path].at(step)[0]
+        bodies = self._tables[schema.BODIES.path].at(step).view(np.float64).reshape(-1, 6)
+        roster = self._tables[schema.ROSTER.path].at(step)
+        return State(
+            step=int(step),
+            time=float(numbers["time"]),
+            dt=float(numbers["dt"]),
+            serials=contiguous(roster["serial"]),
+            body_kinds=contiguous(roster["body_kind"]),
+            shape_kinds=contiguous(roster["shape_kind"]),
+            sizes=contiguous(np.column_stack([roster["size1"], roster["size2"]])),
+            positions=contiguous(bodies[:, 0:2]),
+            angles=contiguous(bodies[:, 2]),
+            velocities=contiguous(bodies[:, 3:5]),
+            angular_velocities=contiguous(bodies[:, 5]),
+            contacts=self._tables[schema.CONTACTS.path].at(step),
+            joints=self._tables[schema.JOINTS.path].at(step),
+        )
+
+
+def contiguous(array: np.ndarray) -> np.ndarray:
+    """The array without gaps, and read-only."""
+    array = np.ascontiguousarray(array)
+    array.flags.writeable = False
+    return array

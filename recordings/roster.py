@@ -1,0 +1,43 @@
+"""Which bodies there are: noticed when it changes, so that shapes are written once and not every step."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+
+from recordings.shot import Shot
+
+
+class Run(NamedTuple):
+    """Shots in a row that have the same bodies."""
+
+    first: int  # index of its first shot in the block
+    shots: list[Shot]
+    changed: bool  # whether these are other bodies than before the run
+
+
+def same_bodies(a: Shot, b: Shot) -> bool:
+    """Whether both shots have the same bodies with the same shapes, in the same order."""
+    return (
+        _same(a.serials, b.serials)
+        and _same(a.body_kinds, b.body_kinds)
+        and _same(a.shape_kinds, b.shape_kinds)
+        and _same(a.sizes, b.sizes)
+    )
+
+
+def runs(previous: Shot | None, shots: list[Shot]) -> Iterator[Run]:
+    """Cuts a block where bodies come or go. `previous` is the last shot before the block."""
+    first = 0
+    changed = previous is None or not same_bodies(previous, shots[0])
+    for index in range(1, len(shots)):
+        if not same_bodies(shots[index - 1], shots[index]):
+            yield Run(first, shots[first:index], changed)
+            first, changed = index, True
+    yield Run(first, shots[first:], changed)
+
+
+def _same(a: np.ndarray, b: np.ndarray) -> bool:
+    return a is b or (a.shape == b.shape and a.tobytes() == b.tobytes())

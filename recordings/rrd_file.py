@@ -1,0 +1,124 @@
+"""The file being written: opens it, sends blocks of shots to it, and makes sure that they arrived."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable
+from pathlib import Path
+
+import numpy as np
+import pyarrow as pa
+import rerun as rr
+
+from recordings import schema
+from recordings.blueprint import layout, stage_lines, static_entities
+from recordings.bodies_view import BodiesView
+from recordings.columns import Sheet, batch
+from recordings.diagnostics_view import MarksView, PlotsView, event_sheets
+from recordings.roster import Run, runs
+from recordings.rrd import is_complete
+from recordings.schema import RecordingError, StartLike
+from recordings.shot import Shot
+from recordings.start import property_batches, start_batches
+from recordings.state_sheets import StateSheets
+
+_FLUSH_SECONDS = 30.0  # a disk that takes longer counts as failed
+
+
+class RrdFile:
+    """One rrd file. All but the constructor runs on the writing thread."""
+
+    def __init__(self, path: Path, start: StartLike) -> None:
+        self._path = path
+        self._previous: Shot | None = None
+        self._state = StateSheets()
+        self._bodies = BodiesView()
+        self._marks = MarksView(start.view[2])
+        self._plots = PlotsView()
+        self._stage_count = 0
+        if not path.parent.is_dir():
+            raise RecordingError(f"cannot write {path}: its folder does not exist")
+        self._stream = rr.RecordingStream(schema.APPLICATION)
+        try:
+            self._stream.save(path)
+            self._identity = _identity(path)
+        except (RuntimeError, OSError) as error:
+            raise RecordingError(f"cannot write {path}: {_reason(error)}") from error
+        self._send_start(start)
+        self._flush()
+
+    def write(self, shots: list[Shot]) -> None:
+        """Sends a block and waits until the system has it: a kill cannot take it back."""
+        every_run = list(runs(self._previous, shots))
+        self._send_sheets(self._state.sheets(shots, every_run))
+        with np.errstate(all="ignore"):  # numbers too large for the picture are still in the state
+            self._send_picture(shots, every_run)
+        self._previous = shots[-1]
+        self._flush()
+
+    def finish(self) -> None:
+        """Writes the footer and waits until the disk has everything."""
+        if self._previous is not None:
+            self._log_static(schema.END, [batch(schema.END_STEP, pa.array([self._previous.step]))])
+        self._flush()
+        self._stream.disconnect()
+        if not is_complete(self._path):
+            raise RecordingError(f"cannot write {self._path}: its end is missing (is the disk full?)")
+        for path in (self._path, self._path.parent):
+            descriptor = os.open(path, os.O_RDONLY)
+            try:
+                os.fsync(descriptor)
+            finally:
+                os.close(descriptor)
+
+    def abandon(self) -> None:
+        """Lets go of the file after an error."""
+        self._stream.disconnect()
+
+    def _send_start(self, start: StartLike) -> None:
+        self._stream.send_recording_name(start.scene)
+        self._stream.send_blueprint(layout(), make_active=True, make_default=True)
+        self._log_static(schema.START, start_batches(start))
+        self._stream.send_property("tumble", property_batches(start))
+        for path, archetype in static_entities(start.view):
+            self._log_static(path, archetype)
+
+    def _send_picture(self, shots: list[Shot], every_run: list[Run]) -> None:
+        """The part to look at."""
+        for run in every_run:
+            self._send_sheets(self._bodies.sheets(run))
+        for sheets in (self._marks.sheets(shots), self._plots.sheets(shots), event_sheets(shots)):
+            self._send_sheets(sheets)
+        if len(self._plots.stages) != self._stage_count:
+            self._stage_count = len(self._plots.stages)
+            self._log_static(schema.STAGE_TIMES, stage_lines(self._plots.stages))
+
+    def _send_sheets(self, sheets: Iterable[Sheet]) -> None:
+        for sheet in sheets:
+            rr.send_columns(sheet.path, sheet.times, sheet.columns, recording=self._stream, strict=True)
+
+    def _log_static(self, path: str, components: rr.AsComponents | Iterable[rr.DescribedComponentBatch]) -> None:
+        rr.log(path, components, static=True, recording=self._stream, strict=True)
+
+    def _flush(self) -> None:
+        """Waits until the system has everything, and makes sure that it went into the file that the user sees."""
+        try:
+            self._stream.flush(timeout_sec=_FLUSH_SECONDS)
+        except Exception as error:  # rerun has no narrower class for a failed write
+            raise RecordingError(f"cannot write {self._path}: {_reason(error)}") from error
+        # A file that was deleted goes on taking data without complaint.
+        if _identity(self._path) != self._identity:
+            raise RecordingError(f"cannot write {self._path}: the file or its folder was removed or replaced")
+
+
+def _identity(path: Path) -> tuple[int, int] | None:
+    """Which file is at the path now."""
+    try:
+        found = path.stat()
+    except OSError:
+        return None
+    return found.st_dev, found.st_ino
+
+
+def _reason(error: Exception) -> str:
+    return " ".join(str(error).split()) or type(error).__name__

@@ -1,0 +1,127 @@
+"""What of a frame goes on disk: its tables, and a checksum over them."""
+
+from __future__ import annotations
+
+import json
+import zlib
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+
+from recordings.schema import BODIES, CONTACTS, JOINTS, ROSTER, STEPS, FrameLike
+
+_OVERHEAD = 1024  # bytes a shot takes beside its arrays, roughly
+
+
+@dataclass(frozen=True, slots=True)
+class Shot:
+    """A frame as the writer's thread gets it: nothing in it can change any more. N bodies."""
+
+    step: int
+    time: float  # [s]
+    dt: float  # [s]
+    serials: np.ndarray  # (N,) int64
+    body_kinds: np.ndarray  # (N,) uint8
+    shape_kinds: np.ndarray  # (N,) uint8
+    sizes: np.ndarray  # (N, 2) [m]
+    positions: np.ndarray  # (N, 2) [m]
+    angles: np.ndarray  # (N,) [rad]
+    velocities: np.ndarray  # (N, 2) [m/s]
+    angular_velocities: np.ndarray  # (N,) [rad/s]
+    contacts: np.ndarray  # (C,)
+    joints: np.ndarray  # (J,)
+    diagnostics: tuple[float, float, float, float, float, float, int]  # in the order of STEPS
+    stage_ms: dict[str, float]  # [ms]
+    commands: tuple[str, ...]  # one JSON text each
+
+    @property
+    def nbytes(self) -> int:
+        """Memory that this shot holds, roughly [bytes]."""
+        return _OVERHEAD + 82 * len(self.serials) + self.contacts.nbytes + self.joints.nbytes
+
+
+def take(frame: FrameLike) -> Shot:
+    """The frame's shot. Arrays that nobody can write to are taken as they are, others are copied."""
+    d = frame.diagnostics
+    return Shot(
+        step=int(frame.step),
+        time=float(frame.time),
+        dt=float(frame.dt),
+        serials=_settled(frame.serials),
+        body_kinds=_settled(frame.body_kinds),
+        shape_kinds=_settled(frame.shape_kinds),
+        sizes=_settled(frame.sizes),
+        positions=_settled(frame.positions),
+        angles=_settled(frame.angles),
+        velocities=_settled(frame.velocities),
+        angular_velocities=_settled(frame.angular_velocities),
+        contacts=_settled(frame.contacts),
+        joints=_settled(frame.joints),
+        diagnostics=(
+            d.kinetic_energy,
+            d.potential_energy,
+            d.momentum[0],
+            d.momentum[1],
+            d.angular_momentum,
+            d.max_penetration,
+            d.contact_count,
+        ),
+        stage_ms=dict(frame.stage_ms),
+        commands=tuple(json.dumps(command) for command in frame.commands) if frame.commands else (),
+    )
+
+
+def _settled(array: np.ndarray) -> np.ndarray:
+    """The array itself if it and what it looks into are read-only, else a copy."""
+    base = array.base
+    frozen = not array.flags.writeable and (base is None or (isinstance(base, np.ndarray) and not base.flags.writeable))
+    return array if frozen else array.copy()
+
+
+def body_rows(shots: list[Shot]) -> np.ndarray:
+    """The BODIES table of all shots, one after the other."""
+    rows = np.empty(sum(len(shot.serials) for shot in shots), BODIES.dtype)
+    numbers = rows.view(np.float64).reshape(-1, 6)
+    np.concatenate([shot.positions for shot in shots], out=numbers[:, 0:2])
+    np.concatenate([shot.angles for shot in shots], out=numbers[:, 2])
+    np.concatenate([shot.velocities for shot in shots], out=numbers[:, 3:5])
+    np.concatenate([shot.angular_velocities for shot in shots], out=numbers[:, 5])
+    return rows
+
+
+def contact_rows(shots: list[Shot]) -> np.ndarray:
+    """The CONTACTS table of all shots, one after the other."""
+    return np.concatenate([shot.contacts for shot in shots]).astype(CONTACTS.dtype, copy=False)
+
+
+def joint_rows(shots: list[Shot]) -> np.ndarray:
+    """The JOINTS table of all shots, one after the other."""
+    return np.concatenate([shot.joints for shot in shots]).astype(JOINTS.dtype, copy=False)
+
+
+def roster_rows(shot: Shot) -> np.ndarray:
+    """The ROSTER table of one shot, (N,)."""
+    rows = np.empty(len(shot.serials), ROSTER.dtype)
+    rows["serial"], rows["body_kind"], rows["shape_kind"] = shot.serials, shot.body_kinds, shot.shape_kinds
+    rows["size1"], rows["size2"] = shot.sizes[:, 0], shot.sizes[:, 1]
+    return rows
+
+
+def step_rows(shots: list[Shot]) -> np.ndarray:
+    """The STEPS table of all shots, (K,), its checksums still zero."""
+    return np.array([(shot.time, shot.dt, *shot.diagnostics, 0) for shot in shots], STEPS.dtype)
+
+
+def checksum(step: int, parts: Iterable[np.ndarray], commands: Iterable[str]) -> int:
+    """CRC-32 of one step: its number, its rows of every table in the order of EVERY_STEP, then the roster, and its commands.
+
+    The STEPS row takes part with its checksum set to zero.
+    """
+    value = zlib.crc32(step.to_bytes(8, "little", signed=True))
+    for part in parts:
+        value = zlib.crc32(len(part).to_bytes(8, "little"), value)
+        value = zlib.crc32(part.view(np.uint8).data, value)
+    for text in commands:
+        value = zlib.crc32(text.encode(), value)
+    return value

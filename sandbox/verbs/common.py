@@ -1,0 +1,92 @@
+"""What several verbs share: arguments, bad input, and reports as text or JSON."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+from engine import SOLVERS, validate
+from engine.constants import MAX_ITERATIONS
+from engine.tables import REALS
+from sandbox.scenes import Scene, UnknownScene, find_scene
+
+
+class BadInput(Exception):
+    """The user can mend it: the message is the one line he sees, and the exit code is 2."""
+
+
+def scene_named(name: str) -> Scene:
+    """A scene by name."""
+    try:
+        return find_scene(name)
+    except UnknownScene as error:
+        raise BadInput(str(error)) from None
+
+
+def time_step(text: str) -> float:
+    """A time step as "1/60" or "0.01" [s]."""
+    try:
+        value = float(Fraction(text.replace(" ", "")))
+        return validate.between("dt", value, 1e-5, 1.0)
+    except (ValueError, ZeroDivisionError):
+        raise argparse.ArgumentTypeError(f"{text!r}: must be seconds from 1e-5 to 1, such as 1/60 or 0.01") from None
+
+
+def whole_number(low: int, high: int) -> Any:
+    """An argparse type: a whole number from low to high."""
+
+    def parse(text: str) -> int:
+        try:
+            return validate.whole("value", int(text), low, high)
+        except ValueError:
+            raise argparse.ArgumentTypeError(f"{text!r}: must be a whole number from {low} to {high}") from None
+
+    return parse
+
+
+def add_settings(parser: argparse.ArgumentParser) -> None:
+    """--solver, --iterations, --precision: overrides of what the scene asks for."""
+    parser.add_argument("--solver", choices=list(SOLVERS), help="default: the scene's")
+    parser.add_argument("--iterations", type=whole_number(1, MAX_ITERATIONS), metavar="N", help="default: 10")
+    parser.add_argument("--precision", choices=list(REALS), help="of the solver's numbers; default: single")
+
+
+def chosen_settings(options: argparse.Namespace) -> dict[str, Any]:
+    """The settings that were given."""
+    names = ("solver", "iterations", "precision")
+    return {name: getattr(options, name) for name in names if getattr(options, name) is not None}
+
+
+def add_address(parser: argparse.ArgumentParser) -> None:
+    """--host, --port, --no-open: where the page is served."""
+    parser.add_argument("--host", default="127.0.0.1", help="address to serve on; 0.0.0.0 lets other machines in")
+    parser.add_argument("--port", type=whole_number(0, 65535), default=8080, help="default: 8080; 0 takes a free one")
+    parser.add_argument("--no-open", action="store_true", help="do not open a browser")
+
+
+def add_json(parser: argparse.ArgumentParser) -> None:
+    """--json FILE."""
+    parser.add_argument("--json", metavar="FILE", help="write the report as JSON; - is standard output")
+
+
+def report(options: argparse.Namespace, data: Any, text: str) -> None:
+    """Prints the text, and writes the data where --json says; on standard output the JSON stands alone."""
+    if options.json == "-":
+        print(json.dumps(data, indent=2))
+        return
+    if text:
+        print(text)
+    if options.json:
+        try:
+            Path(options.json).write_text(json.dumps(data, indent=2) + "\n")
+        except OSError as error:
+            raise BadInput(f"--json {options.json}: cannot be written: {error.strerror}") from None
+
+
+def say(text: str) -> None:
+    """A line for the person in front of the terminal, out of the way of what standard output is piped into."""
+    print(text, file=sys.stderr, flush=True)

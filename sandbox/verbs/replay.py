@@ -1,0 +1,136 @@
+"""Play a recording, in the page or in the rerun viewer."""
+
+from __future__ import annotations
+
+import argparse
+import subprocess
+import webbrowser
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from engine import Diagnostics, Settings
+from engine.vec2 import Vec2
+from sandbox.frame import Frame, Status
+from sandbox.signals import stop_requested
+from sandbox.verbs.common import BadInput, add_address, say
+
+NAME = "replay"
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("file", type=Path, metavar="FILE.rrd")
+    parser.add_argument("--viewer", choices=("page", "rerun"), default="page", help="default: page")
+    add_address(parser)
+
+
+def run(options: argparse.Namespace) -> int:
+    from recordings import RecordingError, read
+
+    try:
+        recording = read(options.file)
+    except RecordingError as error:
+        raise BadInput(str(error)) from None
+    if options.viewer == "rerun":
+        return _open_rerun(options.file)
+    return _serve(options, recording)
+
+
+def _open_rerun(file: Path) -> int:
+    """Opens the file in rerun's own viewer and waits for it."""
+    import rerun_cli
+
+    say(f"opening {file} in the rerun viewer")
+    binary = Path(rerun_cli.__file__).parent / "rerun"
+    try:
+        return subprocess.run([str(binary), str(file)], check=False).returncode
+    except OSError as error:
+        raise BadInput(f"the rerun viewer cannot be started: {error}") from None
+
+
+def _serve(options: argparse.Namespace, recording: Any) -> int:
+    from web import ListenError, ReplayApp
+
+    frames = RecordedFrames(recording)
+    if not len(frames):
+        raise BadInput(f"{options.file}: holds no step")
+    with stop_requested() as stop:
+        try:
+            app = ReplayApp(frames, recording.view, host=options.host, port=options.port, title=options.file.name)
+        except ListenError as error:
+            raise BadInput(str(error)) from None
+        print(f"{options.file} plays at {app.url}   (Ctrl-C ends it)", flush=True)
+        if not options.no_open:
+            webbrowser.open(app.url)
+        stop.wait()
+        app.close()
+    return 0
+
+
+class RecordedFrames:
+    """A recording as a sequence of frames, as the page's player takes it. Times within a step were not recorded."""
+
+    def __init__(self, recording: Any) -> None:
+        self._recording = recording
+        self._settings = self._settings_by_step()
+
+    def __len__(self) -> int:
+        return len(self._recording.steps)
+
+    def frame(self, index: int) -> Frame:
+        """Frame number `index`, from 0, of the recorded steps."""
+        recording = self._recording
+        step = int(recording.steps[index])
+        state, numbers = recording.state(step), recording.diagnostics[index]
+        return Frame(
+            scene=recording.scene,
+            step=step,
+            time=state.time,
+            dt=state.dt,
+            serials=state.serials,
+            body_kinds=state.body_kinds,
+            shape_kinds=state.shape_kinds,
+            sizes=state.sizes,
+            positions=state.positions,
+            angles=state.angles,
+            velocities=state.velocities,
+            angular_velocities=state.angular_velocities,
+            contacts=state.contacts,
+            joints=state.joints,
+            diagnostics=Diagnostics(
+                float(numbers["kinetic_energy"]),
+                float(numbers["potential_energy"]),
+                Vec2(float(numbers["momentum_x"]), float(numbers["momentum_y"])),
+                float(numbers["angular_momentum"]),
+                float(numbers["max_penetration"]),
+                int(numbers["contact_count"]),
+            ),
+            settings=self._settings[index],
+            commands=tuple(recording.commands.get(step, ())),
+            content=hash(state.serials.tobytes()),
+            status=Status(),
+        )
+
+    def _settings_by_step(self) -> list[Settings]:
+        """The settings at every step: those of the start, changed by the commands since."""
+        settings = Settings.from_dict(self._recording.settings)
+        result = []
+        for step in self._recording.steps:
+            for command in self._recording.commands.get(int(step), ()):
+                settings = _changed(settings, command)
+            result.append(settings)
+        return result
+
+
+def _changed(settings: Settings, command: dict[str, Any]) -> Settings:
+    """The settings after a recorded command."""
+    match command:
+        case {"command": "set_gravity", "x": x, "y": y}:
+            return replace(settings, gravity=(x, y))
+        case {"command": "set_iterations", "iterations": iterations}:
+            return replace(settings, iterations=iterations)
+        case {"command": "set_switch", "switch": name, "on": on}:
+            return replace(settings, **{name: on})
+        case {"command": "set_solver", "solver": solver}:
+            return replace(settings, solver=solver)
+    return settings

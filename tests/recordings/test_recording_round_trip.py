@@ -1,0 +1,199 @@
+"""What was written comes back bit for bit."""
+
+from __future__ import annotations
+
+import tempfile
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from recorded_frames import DT, Start, random_frame, start_of, steady_frames, tumbling, write
+
+import recordings
+from recordings import schema
+
+ARRAYS = (
+    "serials",
+    "body_kinds",
+    "shape_kinds",
+    "sizes",
+    "positions",
+    "angles",
+    "velocities",
+    "angular_velocities",
+    "contacts",
+    "joints",
+)
+
+
+def assert_same_bits(state: recordings.State, frame: object) -> None:
+    for name in ARRAYS:
+        recorded, shown = getattr(state, name), getattr(frame, name)
+        assert recorded.dtype == shown.dtype, name
+        assert recorded.shape == shown.shape, name
+        assert recorded.tobytes() == shown.tobytes(), name
+
+
+@settings(max_examples=25, deadline=None)
+@given(
+    counts=st.lists(st.tuples(st.integers(0, 6), st.integers(0, 5), st.integers(0, 3)), min_size=1, max_size=6),
+    first_step=st.integers(0, 10**9),
+    seed=st.integers(0, 2**32 - 1),
+)
+def test_any_bits_and_any_counts(counts: list[tuple[int, int, int]], first_step: int, seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    frames = [random_frame(rng, first_step + i, *count) for i, count in enumerate(counts)]
+    with tempfile.TemporaryDirectory() as folder:
+        recording = recordings.read(write(Path(folder) / "any.rrd", frames))
+    assert recording.start_step == first_step
+    assert recording.steps.tolist() == [frame.step for frame in frames[1:]]
+    assert recording.times.tolist() == [frame.time for frame in frames[1:]]
+    for frame in frames:
+        state = recording.state(frame.step)
+        assert (state.step, state.time, state.dt) == (frame.step, frame.time, frame.dt)
+        assert_same_bits(state, frame)
+
+
+def test_start_comes_back(tmp_path: Path) -> None:
+    frame = steady_frames(1, first_step=12)[0]
+    start = Start(
+        scene="Joints/Brücke",
+        step=12,
+        time=0.1 + 0.2,
+        dt=1 / 3,
+        settings={"gravity": [0.0, -9.81], "warm_starting": False, "solver": "sequential_impulses"},
+        snapshot=bytes(range(256)) * 40,
+        hands={"grabs": {"0": [1.5, -0.1]}},
+        view=(0.5, 1 / 7, 20.0),
+        version="1.2.3",
+    )
+    path = tmp_path / "start.rrd"
+    writer = recordings.Writer(path, start)
+    writer.show(frame)
+    writer.close()
+    recording = recordings.read(path)
+    for name in ("scene", "dt", "settings", "snapshot", "hands", "view", "version"):
+        assert getattr(recording, name) == getattr(start, name)
+    assert (recording.start_step, recording.start_time) == (12, 0.1 + 0.2)
+    assert recording.steps.shape == recording.times.shape == recording.diagnostics.shape == (0,)
+    assert_same_bits(recording.state(12), frame)
+
+
+def test_a_recording_closed_at_once_has_no_steps(tmp_path: Path) -> None:
+    path = tmp_path / "none.rrd"
+    recordings.Writer(path, Start()).close()
+    recording = recordings.read(path)
+    assert recording.steps.tolist() == []
+    with pytest.raises(ValueError, match="step 0 is not in"):
+        recording.state(0)
+
+
+def test_commands_and_diagnostics(tmp_path: Path) -> None:
+    frames = list(tumbling(60))
+    commands = ({"command": "set_gravity", "x": 0.1, "y": -10.0}, {"command": "release", "hand": 2})
+    frames[7] = replace(frames[7], commands=commands)
+    recording = recordings.read(write(tmp_path / "c.rrd", frames))
+    assert recording.commands == {7: list(commands), 40: list(frames[40].commands)}
+    for row, frame in zip(recording.diagnostics, frames[1:], strict=True):
+        d = frame.diagnostics
+        assert (row["kinetic_energy"], row["potential_energy"]) == (d.kinetic_energy, d.potential_energy)
+        assert (row["momentum_x"], row["momentum_y"], row["angular_momentum"]) == (*d.momentum, d.angular_momentum)
+        assert (row["max_penetration"], row["contact_count"]) == (d.max_penetration, d.contact_count)
+
+
+def test_steps_outside_are_refused(tmp_path: Path) -> None:
+    recording = recordings.read(write(tmp_path / "s.rrd", steady_frames(4, first_step=10)))
+    for step in (9, 14, -1):
+        with pytest.raises(ValueError, match=f"step {step} is not in .*: 10 to 13"):
+            recording.state(step)
+    assert not recording.state(13).positions.flags.writeable
+
+
+def test_blocks_of_every_size_read_alike(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    frames = list(tumbling(90))
+    for block in (1, 20_000, 1 << 30):
+        monkeypatch.setattr("recordings.mailbox.BLOCK_BYTES", block)
+        assert recordings.compare(recordings.read(write(tmp_path / "b.rrd", frames)), frames) is None
+
+
+def test_what_the_caller_changes_later_does_not_count(tmp_path: Path) -> None:
+    frame = steady_frames(1)[0]
+    live = frame.positions.copy()
+    view = live[:]
+    view.flags.writeable = False  # read-only, but what it looks into is not
+    path = tmp_path / "live.rrd"
+    writer = recordings.Writer(path, start_of(frame))
+    writer.show(replace(frame, positions=view))
+    live[:] = 0.0
+    writer.close()
+    assert recordings.read(path).state(0).positions.tobytes() == frame.positions.tobytes()
+
+
+def test_steps_must_follow_each_other(tmp_path: Path) -> None:
+    frames = steady_frames(4)
+    writer = recordings.Writer(tmp_path / "g.rrd", Start())
+    writer.show(frames[0])
+    for wrong in (0, 2, 3):
+        with pytest.raises(recordings.RecordingError, match=f"step {wrong} came where step 1 was expected"):
+            writer.show(frames[wrong])
+    writer.show(frames[1])
+    writer.close()
+    with pytest.raises(recordings.RecordingError, match="closed"):
+        writer.show(frames[2])
+
+
+def test_shapes_are_written_only_when_bodies_come_or_go(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("recordings.mailbox.BLOCK_BYTES", 30_000)  # many blocks
+    rows = _rows_by_path(write(tmp_path / "t.rrd", list(tumbling(90))))
+    assert rows[schema.ROSTER.path] == 2  # at the start, and at step 40
+    assert rows["/world/bodies/boxes", "Boxes3D:half_sizes"] == 2
+    assert rows["/world/bodies/boxes", "InstancePoses3D:translations"] == 90
+    assert rows["/world/static/boxes", "Boxes3D:half_sizes"] == 2
+    assert rows["/world/static/boxes", "InstancePoses3D:translations"] == 2  # it never moves
+
+
+def _rows_by_path(path: Path) -> dict[object, int]:
+    """Rows of each entity, and of each of its components."""
+    from recordings.rrd import read_chunks
+
+    rows: dict[object, int] = {}
+    for chunk in read_chunks(path, schema.APPLICATION):
+        rows[chunk.path] = rows.get(chunk.path, 0) + chunk.batch.num_rows
+        for name in chunk.batch.schema.names:
+            rows[chunk.path, name] = rows.get((chunk.path, name), 0) + chunk.batch.num_rows
+    return rows
+
+
+def test_our_reader_and_reruns_see_the_same(tmp_path: Path) -> None:
+    """The container is read by our own code: a release of rerun that changes it must not go unnoticed."""
+    from rerun.chunk import RrdReader
+
+    from recordings.rrd import is_complete, read_chunks
+
+    path = write(tmp_path / "r.rrd", list(tumbling(50)))
+    theirs = [chunk for chunk in RrdReader(path).stream() if chunk.entity_path.startswith("/state")]
+    ours = [chunk for chunk in read_chunks(path, schema.APPLICATION) if chunk.path.startswith("/state")]
+    assert is_complete(path)
+    assert len(ours) == len(theirs) > 5
+    for mine, other in zip(ours, theirs, strict=True):
+        batch = other.to_record_batch()
+        assert (mine.path, mine.batch.num_rows) == (other.entity_path, batch.num_rows)
+        for name in mine.batch.schema.names:
+            if name.startswith("tumble.") or name in (schema.STEP_TIMELINE, schema.TIME_TIMELINE):
+                assert mine.batch.column(name).equals(batch.column(name)), name
+
+
+def test_writing_makes_no_warning(tmp_path: Path, recwarn: pytest.WarningsRecorder) -> None:
+    """rerun turns bad columns into warnings, and numpy numbers that only double holds."""
+    write(tmp_path / "w.rrd", list(tumbling(90)))
+    write(tmp_path / "x.rrd", steady_frames(9))
+    assert [str(warning.message) for warning in recwarn] == []
+
+
+def test_time_is_exact_and_the_timeline_rounded(tmp_path: Path) -> None:
+    frames = [replace(frame, time=frame.step * DT + 1e-12) for frame in steady_frames(5)]
+    recording = recordings.read(write(tmp_path / "time.rrd", frames))
+    assert recording.times.tolist() == [frame.time for frame in frames[1:]]

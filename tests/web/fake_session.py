@@ -1,0 +1,154 @@
+"""A session without physics: it keeps what was submitted, applies the simplest of it, and shows synthetic frames."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from sandbox.commands import (
+    LoadScene,
+    Pause,
+    Play,
+    SetGravity,
+    SetIterations,
+    SetSpeed,
+    SetSwitch,
+    Spawn,
+    StartRecording,
+    StopRecording,
+)
+
+from engine import CONTACT_RECORD, JOINT_RECORD, Diagnostics, Settings
+from sandbox.frame import Frame
+from sandbox.scenes import SCENES
+from sandbox.viewer import Viewer
+
+BODY = tuple[str, str, float, float, float, float, float]  # kind, shape, size 1 and 2, x, y, angle
+GROUND: BODY = ("static", "box", 40.0, 2.0, 0.0, -1.0, 0.0)
+DT = 1.0 / 60.0
+
+
+def make_frame(bodies: list[BODY], **changes: Any) -> Frame:
+    """A frame with these bodies at rest, and nothing else in it."""
+    table = np.array([body[2:] for body in bodies], np.float64).reshape(len(bodies), 5)
+    count = len(bodies)
+    frame = Frame(
+        scene=next(iter(SCENES)),
+        step=0,
+        time=0.0,
+        dt=DT,
+        serials=np.arange(count, dtype=np.int64),
+        body_kinds=np.array([body[0] == "dynamic" for body in bodies], np.uint8),
+        shape_kinds=np.array([body[1] == "circle" for body in bodies], np.uint8),
+        sizes=table[:, :2],
+        positions=table[:, 2:4],
+        angles=table[:, 4],
+        velocities=np.zeros((count, 2)),
+        angular_velocities=np.zeros(count),
+        contacts=np.zeros(0, CONTACT_RECORD),
+        joints=np.zeros(0, JOINT_RECORD),
+        diagnostics=Diagnostics(0.0, 0.0, (0.0, 0.0), 0.0, 0.0, 0),
+        settings=Settings(gravity=(0.0, -10.0)),
+        stage_ms={"broad phase": 0.4, "narrow phase": 0.7, "solve": 1.1},
+        content=count,
+    )
+    return replace(frame, **changes)
+
+
+def pyramid(rows: int) -> list[BODY]:
+    bodies = [GROUND]
+    for row in range(rows):
+        for place in range(rows - row):
+            bodies.append(("dynamic", "box", 1.0, 1.0, 1.1 * (place - (rows - row - 1) / 2), 0.5 + row, 0.0))
+    return bodies
+
+
+class FakeSession:
+    """What the page needs of a session. `submitted` is what the tests look at."""
+
+    def __init__(self, bodies: list[BODY], runs: bool = True, **changes: Any) -> None:
+        self.submitted: list[Any] = []
+        self.last_recording: Path | None = None
+        self.frame = make_frame(bodies, **changes)
+        self._bodies = list(bodies)
+        self._viewers: list[Viewer] = []
+        self._closed = threading.Event()
+        self._lock = threading.Lock()
+        self._thread = threading.Thread(target=self._run, daemon=True)
+        if runs:
+            self._thread.start()
+
+    def submit(self, command: Any) -> None:
+        self.submitted.append(command)
+        with self._lock:
+            self.frame = self._applied(command)
+        self.publish()
+
+    def add_viewer(self, viewer: Viewer) -> None:
+        self._viewers.append(viewer)
+
+    def publish(self, **changes: Any) -> None:
+        with self._lock:
+            self.frame = replace(self.frame, **changes)
+        for viewer in self._viewers:
+            viewer.show(self.frame)
+
+    def close(self) -> None:
+        self._closed.set()
+
+    def of(self, kind: type) -> list[Any]:
+        return [command for command in self.submitted if isinstance(command, kind)]
+
+    def wait_for(self, kind: type, count: int = 1, timeout: float = 5.0) -> list[Any]:
+        return wait_until(lambda: self.of(kind) if len(self.of(kind)) >= count else None, timeout, kind.__name__)
+
+    def _applied(self, command: Any) -> Frame:
+        frame, settings, status = self.frame, self.frame.settings, self.frame.status
+        if isinstance(command, Spawn):
+            for place in range(command.count):
+                size = (command.width / 2, 0.0) if command.shape == "circle" else (command.width, command.height)
+                self._bodies.append(
+                    ("dynamic", command.shape, *size, command.x + place * command.width, command.y, 0.0)
+                )
+            kept = {"settings": settings, "status": status, "step": frame.step, "time": frame.time}
+            return make_frame(self._bodies, scene=frame.scene, **kept)
+        if isinstance(command, SetGravity):
+            settings = replace(settings, gravity=(command.x, command.y))
+        elif isinstance(command, SetIterations):
+            settings = replace(settings, iterations=command.iterations)
+        elif isinstance(command, SetSwitch):
+            settings = replace(settings, **{command.name: command.on})
+        elif isinstance(command, SetSpeed):
+            status = replace(status, speed=command.speed)
+        elif isinstance(command, Pause | Play):
+            status = replace(status, paused=isinstance(command, Pause))
+        elif isinstance(command, StartRecording):
+            status = replace(status, recording="fake.rrd")
+        elif isinstance(command, StopRecording):
+            status = replace(status, recording="")
+        elif isinstance(command, LoadScene):
+            return replace(frame, scene=command.name, content=frame.content + 1)
+        return replace(frame, settings=settings, status=status)
+
+    def _run(self) -> None:
+        while not self._closed.wait(DT):
+            if not self.frame.status.paused:
+                step = self.frame.step + 1
+                status = replace(self.frame.status, steps_per_second=60.0)
+                self.publish(step=step, time=step * DT, status=status)
+
+
+def wait_until(look: Callable[[], Any], timeout: float = 5.0, what: str = "it") -> Any:
+    """The first true thing that `look` finds."""
+    end = time.monotonic() + timeout
+    while time.monotonic() < end:
+        found = look()
+        if found:
+            return found
+        time.sleep(0.02)
+    raise AssertionError(f"{what} did not come within {timeout} s")

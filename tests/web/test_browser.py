@@ -1,0 +1,138 @@
+"""The page in a real browser: what it shows, and what a mouse does to it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from sandbox.commands import Grab, MoveHand, Pause, Play, Release, SetGravity, Spawn
+
+from sandbox.scenes import SCENES
+from tests.web.browser import CHROMIUM, look, open_page, text_field, to_pixel
+from tests.web.fake_session import BODY, GROUND, FakeSession, wait_until
+from web import App
+
+pytestmark = [
+    pytest.mark.browser,
+    pytest.mark.skipif(not CHROMIUM.exists(), reason=f"needs a browser at {CHROMIUM}"),
+]
+
+VIEW = next(iter(SCENES.values())).view
+LOW = VIEW[1] - 0.25 * VIEW[2]  # a height in the lower part of the view [m]
+BOX: BODY = ("dynamic", "box", 2.0, 1.0, VIEW[0], VIEW[1], 0.6)
+CIRCLE: BODY = ("dynamic", "circle", 0.8, 0.0, VIEW[0] + 3.0, LOW, 0.0)
+EMPTY = (VIEW[0] + 2.5, VIEW[1] + 3.0)
+
+
+@pytest.fixture(scope="module")
+def opened() -> Iterator[tuple[FakeSession, Any]]:
+    ground = (*GROUND[:4], VIEW[0], LOW - 2.0, 0.0)
+    session = FakeSession([ground, BOX, CIRCLE])
+    app = App(session, port=0)  # type: ignore[arg-type]
+    with open_page(app.url, width=1200, height=700) as page:
+        yield session, page
+    app.close()
+    session.close()
+
+
+Opened = tuple[FakeSession, Any]
+
+
+def test_bodies_are_drawn_where_the_frame_says(opened: Opened, tmp_path: Path) -> None:
+    _, page = opened
+    picture = look(page, tmp_path / "page.png")
+    nothing = _colour(page, picture, *EMPTY)
+    inside = [
+        (BOX[4], BOX[5]),
+        (BOX[4] + 0.6, BOX[5] + 0.41),
+        (CIRCLE[4] - 0.5, CIRCLE[5]),
+        (CIRCLE[4], CIRCLE[5] + 0.6),
+    ]
+    outside = [(BOX[4] + 0.6, BOX[5] - 0.41), (CIRCLE[4] + 0.7, CIRCLE[5] + 0.7), (CIRCLE[4] - 1.0, CIRCLE[5])]
+    assert all(_differs(_colour(page, picture, *point), nothing) for point in inside)
+    assert not any(_differs(_colour(page, picture, *point), nothing) for point in outside)
+    ground, box = _colour(page, picture, VIEW[0] + 1.0, LOW - 2.0), _colour(page, picture, BOX[4], BOX[5])
+    assert _differs(ground, nothing)
+    assert np.ptp(box) > 2 * np.ptp(ground)  # static bodies are grey
+
+
+def test_a_click_spawns_where_it_is(opened: Opened, tmp_path: Path) -> None:
+    session, page = opened
+    before = look(page, tmp_path / "before.png")
+    page.mouse.click(*to_pixel(page, VIEW, *EMPTY))
+    (spawn,) = session.wait_for(Spawn)
+    assert (spawn.x, spawn.y) == pytest.approx(EMPTY, abs=0.03)
+    page.wait_for_timeout(1000)
+    after = look(page, tmp_path / "after.png")
+    assert _differs(_colour(page, before, *EMPTY), _colour(page, after, *EMPTY))
+
+
+def test_a_drag_takes_hold_of_a_body_and_pulls(opened: Opened) -> None:
+    session, page = opened
+    end = (BOX[4] + 2.0, BOX[5] + 1.5)
+    page.mouse.move(*to_pixel(page, VIEW, BOX[4], BOX[5]))
+    page.mouse.down()
+    page.mouse.move(*to_pixel(page, VIEW, *end), steps=8)
+    wait_until(lambda: session.of(MoveHand) and abs(session.of(MoveHand)[-1].x - end[0]) < 0.05)
+    page.mouse.up()
+    (release,) = session.wait_for(Release)
+    (grab,) = session.of(Grab)
+    assert (grab.x, grab.y) == pytest.approx(BOX[4:6], abs=0.03)
+    assert session.of(MoveHand)[-1].y == pytest.approx(end[1], abs=0.05)
+    assert grab.hand == release.hand
+    assert len(session.of(Spawn)) == 1  # the click of the test before
+
+
+def test_a_slider_changes_gravity_and_follows_others(opened: Opened) -> None:
+    session, page = opened
+    field = text_field(page, "gravity y")
+    field.fill("-3")
+    field.press("Enter")
+    assert session.wait_for(SetGravity)[-1] == SetGravity(0.0, -3.0)
+    field.blur()
+    page.wait_for_timeout(800)
+    session.submit(SetGravity(0.0, 7.0))
+    wait_until(lambda: field.input_value() == "7")
+    assert len(session.of(SetGravity)) == 2  # following is not a change of its own
+
+
+def test_space_pauses_and_plays(opened: Opened) -> None:
+    session, page = opened
+    page.keyboard.press("Space")
+    session.wait_for(Pause)
+    page.get_by_role("button", name="Play", exact=True).wait_for(timeout=5000)
+    page.keyboard.press("Space")
+    session.wait_for(Play)
+
+
+def test_the_camera_pans_but_does_not_tilt(opened: Opened, tmp_path: Path) -> None:
+    _, page = opened
+    x, y = to_pixel(page, VIEW, *EMPTY)
+    page.mouse.move(x, y)
+    page.keyboard.down("ArrowLeft")
+    page.wait_for_timeout(300)
+    page.keyboard.up("ArrowLeft")
+    page.wait_for_timeout(500)
+    page.keyboard.press("f")
+    page.wait_for_timeout(1500)
+    picture = look(page, tmp_path / "page.png")
+    centre, nothing = _colour(page, picture, BOX[4], BOX[5]), _colour(page, picture, *(VIEW[0] + 1.5, VIEW[1] + 4.0))
+    assert _differs(centre, nothing)
+
+
+def test_the_browser_had_nothing_to_complain_about(opened: Opened) -> None:
+    complaints = opened[1].complaints
+    assert complaints == []
+
+
+def _colour(page: Any, picture: np.ndarray, x: float, y: float) -> np.ndarray:
+    """The middle colour around a point of the world; lines of the grid do not count."""
+    column, row = (round(value) for value in to_pixel(page, VIEW, x, y))
+    return np.asarray(np.median(picture[row - 3 : row + 4, column - 3 : column + 4].reshape(-1, 3), axis=0))
+
+
+def _differs(first: np.ndarray, second: np.ndarray) -> bool:
+    return bool(np.abs(first - second).max() > 25)

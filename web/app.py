@@ -1,0 +1,52 @@
+"""The live page: a viewer of a session, and the hands that act on it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from sandbox.frame import Frame
+from sandbox.scenes import SCENES
+from web.page import Page
+from web.panels import PANELS, Desk, SpawnPanel
+from web.pointer import Pointer
+
+if TYPE_CHECKING:
+    from sandbox.session import Session
+
+DEFAULT_HOST = "127.0.0.1"  # nobody else's machine, unless told otherwise
+DEFAULT_PORT = 8080
+DEFAULT_VIEW = (0.0, 5.0, 20.0)  # of a scene that is not in the list
+
+
+class App:
+    """Serves a session at `url` until `close`. A Viewer: frames come in on the session's thread, and leave it at once.
+
+    Raises web.ListenError (of which PortInUse is one) when it cannot have its address.
+    """
+
+    def __init__(self, session: Session, host: str = DEFAULT_HOST, port: int = DEFAULT_PORT) -> None:
+        self._page = Page(_view_of, host, port)
+        self.url = self._page.url
+        self._closed = False
+        desk = Desk(self._page, session)
+        panels = [kind(desk) for kind in PANELS]
+        spawn = next(panel for panel in panels if isinstance(panel, SpawnPanel))
+        pointer = Pointer(desk, self._page, spawn)
+        self._page.listeners += [panel.update for panel in panels]
+        self._page.listeners.append(pointer.update)
+        self.show(session.frame)
+        session.add_viewer(self)
+        self._page.open()
+
+    def show(self, frame: Frame) -> None:
+        if not self._closed:
+            self._page.publisher.put(frame)
+
+    def close(self) -> None:
+        if not self._closed:
+            self._closed = True
+            self._page.close()
+
+
+def _view_of(scene: str) -> tuple[float, float, float]:
+    return SCENES[scene].view if scene in SCENES else DEFAULT_VIEW

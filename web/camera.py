@@ -1,0 +1,97 @@
+"""The camera: straight down on the plane, near enough to parallel projection, and never tilted.
+
+viser has no orthographic camera and no lock: a very narrow field of view from very far away does the one, and putting
+a turned camera back does the other. Panning and zooming stay free.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import viser
+
+from web.stage import Stage
+
+FIELD_OF_VIEW = 0.1  # rad, vertical
+LEAST_ASPECT = 1.5  # a scene's view is as wide as this times its height; narrower windows look from further away
+TILT = 1e-3  # as a share of the distance: less is rounding
+NEAREST, FURTHEST = 0.03, 12.0  # how far one may zoom, relative to the scene's own distance
+
+
+class Camera:
+    """Points the camera of every client; each client may then look elsewhere on its own."""
+
+    def __init__(self, server: viser.ViserServer) -> None:
+        self._server = server
+        self._stage = Stage(0.0, 0.0, 20.0)
+        self._aimed: dict[int, tuple[float, float, float]] = {}  # client -> where we put its camera
+        server.initial_camera.fov = FIELD_OF_VIEW
+        server.initial_camera.up = (0.0, 1.0, 0.0)
+        server.on_client_connect(self._on_connect)
+        server.on_client_disconnect(self._on_disconnect)
+
+    def show(self, stage: Stage) -> None:
+        """Make every client see this stage, also those who come later."""
+        self._stage = stage
+        (x, y), distance = _center(stage), _distance(stage, LEAST_ASPECT)
+        initial = self._server.initial_camera
+        initial.near, initial.far = distance * NEAREST / 2, distance * FURTHEST * 2
+        initial.position, initial.look_at = (x, y, distance), (x, y, 0.0)
+        for client in self._server.get_clients().values():
+            self.aim(client)
+
+    def aim(self, client: viser.ClientHandle) -> None:
+        """Back to the scene's own view, for one client."""
+        stage, camera = self._stage, client.camera
+        if camera.image_height == 0:
+            return
+        (x, y), distance = _center(stage), _distance(stage, camera.aspect)
+        self._aimed[client.client_id] = (x, y, distance)
+        with client.atomic():
+            camera.near, camera.far = distance * NEAREST / 2, distance * FURTHEST * 2
+            camera.min_orbit_distance, camera.max_orbit_distance = distance * NEAREST, distance * FURTHEST
+            _look_down(camera, x, y, distance)
+        client.flush()
+
+    async def _on_connect(self, client: viser.ClientHandle) -> None:
+        self.aim(client)
+        client.camera.on_update(self._on_move)
+
+    async def _on_disconnect(self, client: viser.ClientHandle) -> None:
+        self._aimed.pop(client.client_id, None)
+
+    async def _on_move(self, camera: viser.CameraHandle) -> None:
+        aimed = self._aimed.get(camera.client.client_id)
+        if aimed is not None and np.allclose(camera.position, aimed, rtol=1e-4):
+            # Nobody moved it: then it was the window that changed its shape, or the panel that took a part of it.
+            if not math.isclose(aimed[2], _distance(self._stage, camera.aspect), rel_tol=1e-4):
+                self.aim(camera.client)
+        _keep_upright(camera)
+
+
+def _keep_upright(camera: viser.CameraHandle) -> None:
+    (x, y, _), target = camera.position, camera.look_at
+    distance = max(math.dist(camera.position, target) + float(target[2]), 1e-3)  # flying down is zooming in
+    slack = TILT * distance
+    is_straight = abs(x - target[0]) < slack and abs(y - target[1]) < slack and abs(target[2]) < slack
+    if is_straight and camera.up_direction[1] > 1.0 - TILT:
+        return
+    with camera.client.atomic():
+        _look_down(camera, float(target[0]), float(target[1]), distance)
+    camera.client.flush()
+
+
+def _look_down(camera: viser.CameraHandle, x: float, y: float, distance: float) -> None:
+    camera.up_direction = (0.0, 1.0, 0.0)
+    camera.position = (x, y, distance)
+    camera.look_at = (x, y, 0.0)
+
+
+def _center(stage: Stage) -> tuple[float, float]:
+    return stage.center_x - stage.origin[0], stage.center_y - stage.origin[1]
+
+
+def _distance(stage: Stage, aspect: float) -> float:
+    widened = max(1.0, LEAST_ASPECT / max(aspect, 0.1))
+    return widened * stage.height / 2.0 / math.tan(FIELD_OF_VIEW / 2.0)

@@ -1,0 +1,10 @@
+"""What can be drawn over the bodies. A further overlay is one more file and one more line here."""
+
+from web.overlays.contacts import Contacts
+from web.overlays.impulses import Impulses
+from web.overlays.joints import Joints
+from web.overlays.overlay import Overlay
+
+OVERLAYS: tuple[type[Overlay], ...] = (Contacts, Impulses, Joints)
+
+__all__ = ["OVERLAYS", "Overlay"]

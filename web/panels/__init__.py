@@ -1,0 +1,22 @@
+"""The folders of the control panel, in their order. A further one is one more file and one more line here."""
+
+from web.panels.desk import Desk, Panel
+from web.panels.physics import PhysicsPanel
+from web.panels.plots import PlotsPanel
+from web.panels.recording import RecordingPanel
+from web.panels.simulation import SimulationPanel
+from web.panels.spawn import SpawnPanel
+from web.panels.status import StatusPanel
+from web.panels.view import ViewPanel
+
+PANELS: tuple[type[Panel], ...] = (
+    StatusPanel,
+    SimulationPanel,
+    SpawnPanel,
+    PhysicsPanel,
+    ViewPanel,
+    PlotsPanel,
+    RecordingPanel,
+)
+
+__all__ = ["PANELS", "Desk", "Panel", "SpawnPanel"]

@@ -1,0 +1,105 @@
+"""Stage times and energy over the last seconds."""
+
+from __future__ import annotations
+
+import time
+from collections import deque
+from typing import Any
+
+import numpy as np
+import viser
+from viser import uplot
+
+from sandbox.frame import Frame
+from web.panels.desk import Desk
+from web.theme import PLOT_GRID, PLOT_LINES, PLOT_TEXT
+
+INTERVAL = 0.1  # s between two points
+SENDS_EVERY = 3  # points: a plot is sent as a whole each time
+POINTS = 240  # the last 24 s
+HEIGHT = 150  # pixels
+
+Values = dict[str, float]
+
+
+class PlotsPanel:
+    def __init__(self, desk: Desk) -> None:
+        with desk.hud.add_tab("Plots", viser.Icon.CHART_LINE):
+            self._stages = Plot(desk.gui, "ms per step, by stage")
+            self._energy = Plot(desk.gui, "energy [J]")
+        self._next = 0.0
+        self._count = 0
+        self._last: tuple[str, float] = ("", -1.0)
+
+    def update(self, frame: Frame) -> None:
+        now = time.monotonic()
+        scene, last_time = self._last
+        if scene != frame.scene or frame.time < last_time:
+            self._stages.clear()
+            self._energy.clear()
+        elif now < self._next or frame.time == last_time:
+            return
+        self._next, self._last = now + INTERVAL, (frame.scene, frame.time)
+        self._count += 1
+        self._stages.add(frame.time, frame.stage_ms)
+        self._energy.add(frame.time, _energies(frame))
+        if self._count % SENDS_EVERY == 0:
+            self._stages.send()
+            self._energy.send()
+
+
+def _energies(frame: Frame) -> Values:
+    kinetic, potential = frame.diagnostics.kinetic_energy, frame.diagnostics.potential_energy
+    return {"kinetic": kinetic, "potential": potential, "total": kinetic + potential}
+
+
+class Plot:
+    """Lines over simulated time. Which lines is known from the values, so it follows a change of solver."""
+
+    def __init__(self, gui: viser.GuiApi, title: str) -> None:
+        self._names: tuple[str, ...] = ()
+        self._points: deque[tuple[float, ...]] = deque(maxlen=POINTS)
+        nothing = np.zeros(0)
+        self._handle = gui.add_uplot(
+            (nothing, nothing),
+            series=_series(("",)),
+            title=title,
+            scales={"x": uplot.Scale(time=False)},
+            axes=(_axis(), _axis()),
+            legend=uplot.Legend(show=True, live=False),
+            cursor=uplot.Cursor(show=False),
+            height=HEIGHT,
+            padding=(12, 16, 0, 0),
+        )
+
+    def clear(self) -> None:
+        self._points.clear()
+
+    def add(self, moment: float, values: Values) -> None:
+        names = tuple(values)
+        if not names:
+            return
+        if names != self._names:
+            self._names = names
+            self._points.clear()
+            self._handle.series = _series(names)
+        self._points.append((moment, *values.values()))
+
+    def send(self) -> None:
+        if self._points:
+            self._handle.data = tuple(np.array(self._points, np.float64).T.copy())
+
+
+def _series(names: tuple[str, ...]) -> tuple[Any, ...]:
+    colours = (PLOT_LINES[index % len(PLOT_LINES)] for index in range(len(names)))
+    lines = (
+        uplot.Series(label=name, stroke=colour, width=1.5, points={"show": False})
+        for name, colour in zip(names, colours, strict=True)
+    )
+    return (uplot.Series(label="t"), *lines)
+
+
+def _axis() -> uplot.Axis:
+    return uplot.Axis(
+        stroke=PLOT_TEXT, grid={"stroke": PLOT_GRID, "width": 1}, ticks={"stroke": PLOT_GRID, "width": 1}, size=42
+    )
