@@ -55,7 +55,7 @@ class Body:
 
     @property
     def kind(self) -> str:
-        """ "static" or "dynamic"."""
+        """One of BODY_KINDS."""
         return BODY_KINDS[int(self._body["kind"])]
 
     @property

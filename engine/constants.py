@@ -30,6 +30,10 @@ FACE_ABSOLUTE_TOLERANCE = float32_value(0.01)
 """An axis replaces the one chosen before it only if its separation beats 0.95 of the other's by 0.01 of the face's
 half width. Without: two equally good faces alternate from step to step and their impulses are lost."""
 
+COINCIDENT = 1e-15
+"""Centres of circles closer than this are one point [m]: the normal is straight up. Zero: in single precision the
+square of a distance below 1e-19 m loses its digits, and the normal its unit length."""
+
 # --- broad phase --------------------------------------------------------------------------------------------------
 
 BOUNDS_MARGIN = 1e-3

@@ -9,7 +9,7 @@ import numpy as np
 
 from engine import validate
 from engine.bodies import Body, Pair
-from engine.constants import DENSITY, FRICTION, JOINT_BIAS_FACTOR
+from engine.constants import DENSITY, JOINT_BIAS_FACTOR
 from engine.joints.handle import RevoluteJoint
 from engine.shapes import SHAPES, Shape
 from engine.tables import BODY_KINDS, REALS

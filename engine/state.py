@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from engine.broad_phase.all_pairs import WORD
 from engine.narrow_phase import COLLIDERS
 from engine.settings import Settings
 from engine.shapes import BOUNDS
@@ -20,8 +21,6 @@ from engine.tables import (
     revolute_dtype,
     step_dtype,
 )
-
-WORD = 8  # flags come in whole words, see broad_phase/all_pairs.py
 
 
 class ArbiterTable:

@@ -15,7 +15,7 @@ import numpy as np
 BODY_KINDS = ("static", "dynamic")
 STATIC, DYNAMIC = range(2)
 
-REALS = {"single": np.dtype(np.float32), "double": np.dtype(np.float64)}
+REALS: dict[str, np.dtype[np.floating]] = {"single": np.dtype(np.float32), "double": np.dtype(np.float64)}
 
 BODY = np.dtype(
     [

@@ -23,9 +23,6 @@ class Vec2(NamedTuple):
     x: Any
     y: Any
 
-    # numpy scalars and arrays must leave `scalar * vector` to us, or they would make an array of it
-    __array_ufunc__ = None
-
     def __add__(self, other: Any) -> Any:
         if isinstance(other, np.ndarray):
             return np.asarray(tuple(self)) + other
@@ -52,8 +49,12 @@ class Vec2(NamedTuple):
         return Vec2(-self.x, -self.y)
 
 
+# numpy scalars and arrays must leave `scalar * vector` to us, or they would make an array of it
+Vec2.__array_ufunc__ = None  # type: ignore[attr-defined]
+
+
 def _is_vec2(value: Any) -> bool:
-    return isinstance(value, types.BaseNamedTuple) and value.instance_class is Vec2
+    return getattr(value, "instance_class", None) is Vec2
 
 
 @overload(operator.add)

@@ -269,9 +269,8 @@ class World(Configured):
         assert fields is not None
         real, offset = fields[first][:2]
         shape = (len(rows), width)
-        columns = np.ndarray(shape, real, rows, offset, (rows.itemsize, real.itemsize))  # type: ignore[call-overload]
+        columns = np.ndarray(shape, real, rows, offset, (rows.itemsize, real.itemsize))
         columns = columns[: storage.count] if storage.dense else columns[storage.order]
         columns = columns.astype(np.float64, copy=False)
         columns.flags.writeable = False
         return columns
-

@@ -7,11 +7,11 @@ lively session repeatable.
 
 from __future__ import annotations
 
+import math
+import random
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, fields
 from typing import TYPE_CHECKING, Any, ClassVar, Protocol
-
-import numpy as np
 
 from engine import SHAPE_KINDS, SOLVERS, Box, Circle, validate
 from engine.constants import MAX_ITERATIONS
@@ -150,7 +150,7 @@ class Spawn(PhysicsCommand):
         simulation.make_room(self.count)
         box = self.shape == "box"
         shape = Box(self.width, self.height) if box else Circle(0.5 * self.width)
-        columns = int(np.ceil(np.sqrt(self.count)))
+        columns = math.ceil(math.sqrt(self.count))
         step_x, step_y = 1.1 * self.width, 1.1 * (self.height if box else self.width)
         for i in range(self.count):
             x = self.x + step_x * (i % columns - 0.5 * (columns - 1))
@@ -180,10 +180,10 @@ class Bomb(PhysicsCommand):
         )
 
     @classmethod
-    def random(cls, rng: np.random.Generator) -> Bomb:
+    def random(cls, rng: random.Random) -> Bomb:
         """From above, aimed at the origin, as Box2D Lite throws it."""
-        x, y = float(rng.uniform(-15.0, 15.0)), 15.0
-        return cls(x, y, float(rng.uniform(-1.5, 1.5)), -1.5 * x, -1.5 * y, float(rng.uniform(-20.0, 20.0)))
+        x, y = rng.uniform(-15.0, 15.0), 15.0
+        return cls(x, y, rng.uniform(-1.5, 1.5), -1.5 * x, -1.5 * y, rng.uniform(-20.0, 20.0))
 
     def apply(self, simulation: Simulation) -> None:
         bomb = simulation.bomb()
@@ -249,7 +249,7 @@ def command_from_dict(values: Mapping[str, Any]) -> PhysicsCommand:
     """What `to_dict` gave; anything else is a ValueError."""
     kind = PHYSICS[validate.choice("command", values.get("command"), PHYSICS)]
     arguments = {name: value for name, value in values.items() if name != "command"}
-    known = {field.name for field in fields(kind)}  # type: ignore[arg-type]
+    known = {field.name for field in fields(kind)}
     if set(arguments) != known:
         raise validate.refuse(f"arguments of {kind.name}", sorted(arguments), f"exactly {sorted(known)}")
     return kind(**arguments)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass
 from importlib import metadata
 from pathlib import Path
@@ -111,10 +112,8 @@ class Recorder:
             self._current.show(frame)
         except Exception:
             current, self._current = self._current, None
-            try:
+            with suppress(Exception):  # the first error says more
                 current.abandon()
-            except Exception:  # the first error says more
-                pass
             raise
 
     def stop(self) -> Path | None:

@@ -125,7 +125,7 @@ class Session:
         try:
             action()
         except Exception as error:
-            log.exception("the loop goes on")
+            log.debug("in the loop", exc_info=True)
             self._fail(f"{type(error).__name__}: {error}")
 
     def _turn(self) -> None:
@@ -188,8 +188,9 @@ class Session:
         for viewer in viewers:
             try:
                 viewer.show(frame)
-            except Exception:
-                log.exception("a viewer failed and is dropped")
+            except Exception as error:
+                log.error("a viewer failed and is dropped: %s", error)
+                log.debug("in the viewer", exc_info=True)
                 self.remove_viewer(viewer)
 
     def _make_frame(self, commands: tuple[dict, ...] = ()) -> Frame:

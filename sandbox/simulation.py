@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from engine import Body, Box, Snapshot, World
+from engine import Body, Box, Snapshot
 from engine.constants import float32_value
 from sandbox.commands import PhysicsCommand
 from sandbox.frame import Frame, Status
@@ -54,7 +54,7 @@ class Simulation:
         """Refuses more bodies than the sandbox is made for."""
         room = MOST_BODIES - self.world.body_count
         if count > room:
-            raise ValueError(f"count = {count}: must be at most {max(room, 0)}, the scene then has {MOST_BODIES} bodies")
+            raise ValueError(f"count = {count}: must be at most {max(room, 0)}, a scene holds {MOST_BODIES} bodies")
 
     def bomb(self) -> Body:
         """The bomb, made on its first throw."""

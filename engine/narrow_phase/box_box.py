@@ -66,8 +66,8 @@ def find_axis(offset, q1, half1, q2, half2):
         face = FACE_2_Y
         separation = sep2_y
 
-    along_y = face == FACE_1_Y or face == FACE_2_Y
-    of_first = face == FACE_1_X or face == FACE_1_Y
+    along_y = face in (FACE_1_Y, FACE_2_Y)
+    of_first = face in (FACE_1_X, FACE_1_Y)
     d = d1 if of_first else d2
     normal = direction(q1 if of_first else q2, along_y, (d.y if along_y else d.x) > 0)
     touching = sep1_x <= 0 and sep1_y <= 0 and sep2_x <= 0 and sep2_y <= 0

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from engine.constants import COINCIDENT
 from engine.jit import kernel
 from engine.lanes import const
 from engine.narrow_phase.manifold import add_contact, places_of
@@ -16,7 +17,7 @@ FEATURE = 0  # two circles touch in one way only
 @kernel
 def unit(vector, length):
     """The vector's direction; straight up where it has none."""
-    if length > 0:
+    if length > const(COINCIDENT, length):
         return Vec2(vector.x / length, vector.y / length)
     return Vec2(const(0.0, length), const(1.0, length))
 

@@ -7,6 +7,7 @@ Its decimals are float32 literals, so ours are too: only then do the trajectorie
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 
@@ -23,7 +24,7 @@ def add_ground(world: World) -> Body:
     return world.create_body(Box(100, 20), position=(0, -10), kind="static", friction=FRICTION)
 
 
-def soft_joint(mass: float, frequency: float, damping_ratio: float = f32(0.7)) -> dict[str, float]:
+def soft_joint(mass: float, frequency: float, damping_ratio: float = f32(0.7)) -> dict[str, Any]:
     """Softness and bias factor that make a joint a damped spring for that mass [kg] and frequency [Hz].
 
     The implicit Euler spring of E. Catto, "Soft Constraints" (GDC 2011), at the demos' time step of 1/60 s.
@@ -157,8 +158,8 @@ def circles(world: World) -> None:
     ):
         world.create_body(shape, position=position, angle=angle, kind="static", friction=0.6)
     for i in range(24):
-        position = (-7.5 + 1.1 * (i % 6), 10.0 + 1.1 * (i // 6))
+        start = (-7.5 + 1.1 * (i % 6), 10.0 + 1.1 * (i // 6))
         if i % 4 == 3:
-            world.create_body(Box(0.7, 0.7), position=position, friction=0.4)
+            world.create_body(Box(0.7, 0.7), position=start, friction=0.4)
         else:
-            world.create_body(Circle(0.25 + 0.05 * (i % 5)), position=position, friction=0.6)
+            world.create_body(Circle(0.25 + 0.05 * (i % 5)), position=start, friction=0.6)

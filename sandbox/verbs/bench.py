@@ -1,4 +1,11 @@
 """Time the engine."""
+
 NAME = "bench"
-def add_arguments(parser): pass
-def run(options): return 0
+
+
+def add_arguments(parser):
+    pass
+
+
+def run(options):
+    return 0

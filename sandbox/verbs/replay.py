@@ -6,6 +6,7 @@ import argparse
 import subprocess
 import webbrowser
 from dataclasses import replace
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -38,10 +39,11 @@ def run(options: argparse.Namespace) -> int:
 
 def _open_rerun(file: Path) -> int:
     """Opens the file in rerun's own viewer and waits for it."""
-    import rerun_cli
-
+    package = find_spec("rerun_cli")
+    if package is None or package.origin is None:
+        raise BadInput("the rerun viewer is not installed: it comes with rerun-sdk")
+    binary = Path(package.origin).parent / "rerun"
     say(f"opening {file} in the rerun viewer")
-    binary = Path(rerun_cli.__file__).parent / "rerun"
     try:
         return subprocess.run([str(binary), str(file)], check=False).returncode
     except OSError as error:

@@ -30,7 +30,8 @@ def run(options: argparse.Namespace) -> int:
     try:
         recording = read(options.file)
         compile_all(say, [recording.settings.get("precision", "single")])
-        difference = compare(recording, _shown(recording))
+        found = compare(recording, _shown(recording))
+        difference = None if found is None else str(found)
     except RecordingError as error:
         raise BadInput(str(error)) from None
     except StepError as error:
@@ -43,7 +44,7 @@ def run(options: argparse.Namespace) -> int:
         "scene": recording.scene,
         "steps": steps,
         "identical": difference is None,
-        "difference": None if difference is None else str(difference),
+        "difference": difference,
     }
     report(options, data, f"{steps} steps identical" if difference is None else f"different: {difference}")
     return 0 if difference is None else DIFFERENT
