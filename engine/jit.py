@@ -12,7 +12,7 @@ only while all of this is unchanged:
 - the kernel's options, the settings of numba that change the compiled code, and the versions of numpy and llvmlite.
 
 All of it is hashed into the name of the cache file, so two checkouts, branches or settings never read each other's
-code. Old files stay until `make clean`. What remains with the author of a kernel:
+code; each kernel keeps its last few. What remains with the author of a kernel:
 
 - a global constant is written down or computed from other constants; one read from the environment is not seen here;
 - no compiled function is an argument or a closure's free variable: numba would miss the cache at each start and leave a
@@ -49,6 +49,7 @@ OPTIONS: dict[str, Any] = {"nopython": True, "nogil": True, "error_model": "nump
 config: Any = numba.config
 _ENGINE = Path(__file__).resolve().parent
 _SETTINGS = ("BOUNDSCHECK", "OPT", "LOOP_VECTORIZE", "SLP_VECTORIZE", "DEBUGINFO_DEFAULT", "LLVM_REFPRUNE_FLAGS")
+_KEPT = 6  # versions of one kernel on disk: those of a few edits, branches and settings
 _decorating = threading.RLock()
 
 
@@ -89,6 +90,7 @@ class KernelLocator(_CacheLocator):
         self._py_file = path  # numba reads this name for its warnings
         self._folder = folder
         self._line = function.__code__.co_firstlineno
+        self._kernel = f"{Path(path).stem}.{function.__qualname__}".replace("<", "").replace(">", "")
         self._stamp = _stamp(function, Path(path).resolve())
 
     @classmethod
@@ -106,6 +108,24 @@ class KernelLocator(_CacheLocator):
         # numba writes an index first and the code after it: with the stamp in the name, a process that is killed
         # between the two, or another one that reads then, never pairs a new index with old code.
         return f"{self._line}-{self._stamp[:12]}"
+
+    def ensure_cache_path(self) -> None:
+        """numba asks for this before it saves: the oldest code of the same kernel makes room."""
+        super().ensure_cache_path()
+        versions: dict[str, list[Path]] = {}  # by stamp, newest first; a file is kernel-line-stamp.py311.1.nbc
+        for file in sorted(Path(self._folder).glob(f"{self._kernel}-*-*.nb[ic]"), key=_saved, reverse=True):
+            versions.setdefault(file.name.removeprefix(f"{self._kernel}-").split("-")[1][:12], []).append(file)
+        versions.pop(self._stamp[:12], None)
+        for files in list(versions.values())[_KEPT - 1 :]:
+            for file in files:
+                file.unlink(missing_ok=True)
+
+
+def _saved(file: Path) -> int:
+    try:
+        return file.stat().st_mtime_ns
+    except FileNotFoundError:  # another process made room too
+        return 0
 
 
 @cache

@@ -6,8 +6,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from engine.jit import kernel
 from engine.state import State
-from engine.tables import CONTACT_RECORD, JOINT_RECORD
+from engine.tables import CONTACT_RECORD, JOINT_RECORD, empty
 from engine.vec2 import Vec2
 
 if TYPE_CHECKING:
@@ -35,20 +36,35 @@ class Arbiter(NamedTuple):
     contacts: tuple[Contact, ...]
 
 
+@kernel
+def write_contacts(arbiters, contacts, count, records):
+    """Writes the contacts of the first `count` arbiters as CONTACT_RECORD rows; returns how many there are."""
+    total = 0
+    for index in range(count):
+        arbiter = arbiters[index]
+        for i in range(arbiter.count):
+            contact = contacts[index, i]
+            record = records[total]
+            record.body1 = arbiter.serial1
+            record.body2 = arbiter.serial2
+            record.feature = contact.feature
+            record.x = contact.x
+            record.y = contact.y
+            record.nx = arbiter.nx
+            record.ny = arbiter.ny
+            record.separation = contact.separation
+            record.normal_impulse = contact.normal_impulse
+            record.tangent_impulse = contact.tangent_impulse
+            total += 1
+    return total
+
+
 def contact_records(state: State) -> np.ndarray:
     """(C,) CONTACT_RECORD: all contacts of the last step, in the solver's order."""
     table = state.arbiters
-    arbiters = table.rows[: table.count]
-    which, number = np.nonzero(np.arange(2) < arbiters["count"][:, None])
-    records = np.zeros(len(which), CONTACT_RECORD)
-    records["body1"] = arbiters["serial1"][which]
-    records["body2"] = arbiters["serial2"][which]
-    records["nx"] = arbiters["nx"][which]
-    records["ny"] = arbiters["ny"][which]
-    contacts = table.contacts[which, number]
-    for name in ("feature", "x", "y", "separation", "normal_impulse", "tangent_impulse"):
-        records[name] = contacts[name]
-    return records
+    records = empty(2 * table.count, CONTACT_RECORD)
+    total = write_contacts(table.rows, table.contacts, table.count, records)
+    return np.array(records[:total], copy=True)
 
 
 def joint_records(state: State) -> np.ndarray:

@@ -81,6 +81,11 @@ class Storage:
         rows = np.flatnonzero(self.tables[self.main]["serial"][: self._used] == serial)
         return int(rows[0]) if len(rows) else -1
 
+    def gather(self, table: str) -> np.ndarray:
+        """A copy of a table's rows in the order of creation."""
+        rows = self.tables[table]
+        return np.array(rows[: self.count]) if self.dense else rows[self._order]
+
     def save(self) -> dict[str, np.ndarray]:
         """Copies of the rows in use, and the serial to come."""
         saved = {name: np.array(table[: self._used]) for name, table in self.tables.items()}

@@ -20,6 +20,7 @@ from engine.shapes import Shape
 from engine.snapshot import Snapshot, state_hash
 from engine.stages import STAGES, prepare_step
 from engine.state import State
+from engine.tables import BODY_KINDS
 
 
 class World(Configured):
@@ -128,7 +129,7 @@ class World(Configured):
     ) -> RevoluteJoint:
         """Pins two bodies together at a point of the world.
 
-        anchor [m]; softness [1/kg]: 0 is rigid, 1/(d + dt k) a spring k [N/m] with damper d [N s/m]; bias_factor:
+        anchor [m]; softness [1/kg]: 0 is rigid, 1/(dt (d + dt k)) a spring k [N/m] with damper d [N s/m]; bias_factor:
         part of the separation that a step removes, Box2D Lite's 0.2 if left out, dt k/(d + dt k) for that spring.
         collide_connected: whether the two collide with each other.
         """
@@ -187,7 +188,7 @@ class World(Configured):
 
     def body_records(self) -> np.ndarray:
         """(N,) BODY: what describes the bodies as one table, in the order of creation: a copy."""
-        return np.array(self._state.bodies.tables["bodies"][self._state.bodies.order])
+        return self._state.bodies.gather("bodies")
 
     @property
     def positions(self) -> np.ndarray:
@@ -215,6 +216,7 @@ class World(Configured):
     def body_at(self, point: Pair, kind: str = "dynamic") -> Body | None:
         """The body of that kind under a point of the world [m]; of several, the one created last."""
         x, y = validate.vector("point", point)
+        kind = validate.choice("kind", kind, BODY_KINDS)
         for body in reversed(self.bodies):
             if body.kind == kind and body.contains((x, y)):
                 return body

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import os
+import contextlib
 from collections.abc import Iterable
 from pathlib import Path
 
@@ -15,8 +15,8 @@ from recordings.blueprint import layout, stage_lines, static_entities
 from recordings.bodies_view import BodiesView
 from recordings.columns import Sheet, batch
 from recordings.diagnostics_view import MarksView, PlotsView, event_sheets
+from recordings.piped_file import PipedFile
 from recordings.roster import Run, runs
-from recordings.rrd import is_complete
 from recordings.schema import RecordingError, StartLike
 from recordings.shot import Shot
 from recordings.start import property_batches, start_batches
@@ -36,14 +36,15 @@ class RrdFile:
         self._marks = MarksView(start.view[2])
         self._plots = PlotsView()
         self._stage_count = 0
-        if not path.parent.is_dir():
-            raise RecordingError(f"cannot write {path}: its folder does not exist")
-        self._stream = rr.RecordingStream(schema.APPLICATION)
         try:
-            self._stream.save(path)
-            self._identity = _identity(path)
-        except (RuntimeError, OSError) as error:
-            raise RecordingError(f"cannot write {path}: {_reason(error)}") from error
+            self._disk = PipedFile(path)
+        except FileNotFoundError:
+            raise RecordingError(f"cannot write {path}: its folder does not exist") from None
+        except OSError as error:
+            raise _refusal(path, error) from error
+        self._stream = rr.RecordingStream(schema.APPLICATION)
+        self._stream.save(self._disk.inlet)
+        self._disk.opened()
         self._send_start(start)
         self._flush()
 
@@ -61,19 +62,20 @@ class RrdFile:
         if self._previous is not None:
             self._log_static(schema.END, [batch(schema.END_STEP, pa.array([self._previous.step]))])
         self._flush()
-        self._stream.disconnect()
-        if not is_complete(self._path):
-            raise RecordingError(f"cannot write {self._path}: its end is missing (is the disk full?)")
-        for path in (self._path, self._path.parent):
-            descriptor = os.open(path, os.O_RDONLY)
-            try:
-                os.fsync(descriptor)
-            finally:
-                os.close(descriptor)
+        self._end()
 
     def abandon(self) -> None:
         """Lets go of the file after an error."""
+        with contextlib.suppress(RecordingError):
+            self._end()
+
+    def _end(self) -> None:
         self._stream.disconnect()
+        del self._stream  # and with it rerun's two threads
+        try:
+            self._disk.close(_FLUSH_SECONDS)
+        except OSError as error:
+            raise _refusal(self._path, error) from error
 
     def _send_start(self, start: StartLike) -> None:
         self._stream.send_recording_name(start.scene)
@@ -101,24 +103,15 @@ class RrdFile:
         rr.log(path, components, static=True, recording=self._stream, strict=True)
 
     def _flush(self) -> None:
-        """Waits until the system has everything, and makes sure that it went into the file that the user sees."""
+        """Waits until the system has everything, in the file that the user sees."""
         try:
             self._stream.flush(timeout_sec=_FLUSH_SECONDS)
-        except Exception as error:  # rerun has no narrower class for a failed write
-            raise RecordingError(f"cannot write {self._path}: {_reason(error)}") from error
-        # A file that was deleted goes on taking data without complaint.
-        if _identity(self._path) != self._identity:
-            raise RecordingError(f"cannot write {self._path}: the file or its folder was removed or replaced")
+            self._disk.settle(_FLUSH_SECONDS)
+        except Exception as error:  # rerun has no narrower class for a flush that takes too long
+            raise _refusal(self._path, error) from error
 
 
-def _identity(path: Path) -> tuple[int, int] | None:
-    """Which file is at the path now."""
-    try:
-        found = path.stat()
-    except OSError:
-        return None
-    return found.st_dev, found.st_ino
-
-
-def _reason(error: Exception) -> str:
-    return " ".join(str(error).split()) or type(error).__name__
+def _refusal(path: Path, error: Exception) -> RecordingError:
+    """One line with the system's own words, such as `No space left on device`."""
+    reason = (isinstance(error, OSError) and error.strerror) or " ".join(str(error).split()) or type(error).__name__
+    return RecordingError(f"cannot write {path}: {reason}")

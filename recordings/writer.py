@@ -11,6 +11,9 @@ from recordings.rrd_file import RrdFile
 from recordings.schema import FrameLike, RecordingError, StartLike
 from recordings.shot import take
 
+CLOSE_SECONDS = 60.0  # after which `close` gives up on the disk
+ABANDON_SECONDS = 1.0  # the same after an error, when there is nothing more to save
+
 
 class Writer:
     """Records every frame it is shown into one file, the start frame first.
@@ -52,9 +55,12 @@ class Writer:
         self._closed = True
         atexit.unregister(self.close)
         self._mailbox.close()
-        self._thread.join()
-        if not self._reported:
-            self._raise_failure()
+        self._thread.join(CLOSE_SECONDS if self._failure is None else ABANDON_SECONDS)
+        if self._reported:
+            return
+        self._raise_failure()
+        if self._thread.is_alive():
+            raise RecordingError(f"cannot write {self.path}: not finished after {CLOSE_SECONDS:g} s")
 
     def _raise_failure(self) -> None:
         if self._failure is not None:

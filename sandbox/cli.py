@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import argparse
 import logging
+import os
 import sys
 from collections.abc import Sequence
 from importlib import metadata
 
-from sandbox.verbs import VERBS
-from sandbox.verbs.common import BadInput
+# The engine is imported by the verbs, when they are looked for: a Ctrl-C in that second must find `main` at work.
 
 BAD_INPUT = 2  # exit code: what was asked for cannot be
 INTERRUPTED = 130  # exit code: Ctrl-C, as shells have it
@@ -17,6 +17,8 @@ INTERRUPTED = 130  # exit code: Ctrl-C, as shells have it
 
 def make_parser() -> argparse.ArgumentParser:
     """The parser with all its verbs."""
+    from sandbox.verbs import VERBS
+
     parser = argparse.ArgumentParser(prog="tumble", description="A 2D physics engine and its laboratory.")
     parser.add_argument("--version", action="version", version=f"tumble {metadata.version('tumble')}")
     verbs = parser.add_subparsers(dest="verb", metavar="VERB", required=True)
@@ -31,17 +33,26 @@ def make_parser() -> argparse.ArgumentParser:
 def main(arguments: Sequence[str] | None = None) -> int:
     """Runs one verb; its exit code. No traceback reaches the user: what he can mend is one clear line."""
     logging.basicConfig(format="tumble: %(message)s", level=logging.WARNING)
+    try:
+        code = _run(arguments)
+        sys.stdout.flush()
+        return code
+    except KeyboardInterrupt:
+        return INTERRUPTED
+    except BrokenPipeError:  # whoever read our output has gone; what is still in the buffer must not complain later
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 0
+
+
+def _run(arguments: Sequence[str] | None) -> int:
     options = make_parser().parse_args(arguments)
+    from sandbox.verbs.common import BadInput
+
     try:
         return options.run(options)
     except BadInput as error:
         print(f"tumble: {error}", file=sys.stderr)
         return BAD_INPUT
-    except KeyboardInterrupt:
-        return INTERRUPTED
-    except BrokenPipeError:  # whoever read our output has gone
-        sys.stderr.close()
-        return 0
 
 
 if __name__ == "__main__":

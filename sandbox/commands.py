@@ -247,6 +247,8 @@ PHYSICS = {
 
 def command_from_dict(values: Mapping[str, Any]) -> PhysicsCommand:
     """What `to_dict` gave; anything else is a ValueError."""
+    if not isinstance(values, Mapping):
+        raise validate.refuse("command", values, "a mapping of names to values")
     kind = PHYSICS[validate.choice("command", values.get("command"), PHYSICS)]
     arguments = {name: value for name, value in values.items() if name != "command"}
     known = {field.name for field in fields(kind)}

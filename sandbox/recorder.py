@@ -57,7 +57,12 @@ class PartFile:
         self.path = path
         self.part = path.with_name(path.name + ".part")
         self._viewer = open_recorder(self.part, recording_start(simulation))
-        self._viewer.show(simulation.frame())
+        try:
+            self._viewer.show(simulation.frame())
+        except Exception:
+            with suppress(Exception):  # the first error says more
+                self._viewer.close()
+            raise
 
     def show(self, frame: Frame) -> None:
         self._viewer.show(frame)
@@ -101,8 +106,8 @@ class Recorder:
         try:
             self._folder.mkdir(parents=True, exist_ok=True)
             self._current = PartFile(self._free_path(f"{slug}-{stamp}"), self._open, simulation)
-        except OSError as error:
-            raise ValueError(f"recording: must be in a folder that can be written ({error})") from None
+        except Exception as error:  # of the disk, or of whatever writes the file
+            raise ValueError(f"recording: must be in a folder that can be written ({error})") from error
 
     def show(self, frame: Frame) -> None:
         """Writes a frame; if that fails the recording ends, what was written is kept, and the error goes on."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import logging
 import queue
 import threading
-from collections.abc import Callable
+import time
 from pathlib import Path
 from typing import Any
 
@@ -22,7 +22,9 @@ from sandbox.viewer import Viewer
 log = logging.getLogger("tumble.session")
 
 MOST_QUEUED = 10_000  # commands: beyond that new ones are dropped
-MOST_A_ROUND = 500  # commands applied between two steps: a flood slows itself down, not the simulation
+MOST_A_ROUND = 500  # commands obeyed in one round: a flood slows itself down, not the simulation
+LONGEST_ROUND = 0.005  # after that no further command is taken up in a round [s]
+MOST_A_STEP = 10_000  # physics commands between two steps: a flood must not fill the memory while all stands still
 IDLE = 0.05  # longest wait for a command [s]
 
 
@@ -108,25 +110,25 @@ class Session:
         self._closing.set()
         if self._thread is not None and self._thread is not threading.current_thread():
             self._thread.join(timeout=10.0)
-        self._guarded(self._stop_recording)
+        self._stop_recording()
         with self._viewers_lock:
             viewers, self._viewers = self._viewers, []
         for viewer in viewers:
-            viewer.close()
+            try:
+                viewer.close()
+            except Exception as error:
+                log.error("a viewer failed to close: %s", error)
 
     # --- the loop -----------------------------------------------------------------------------------------------
 
     def _run(self) -> None:
+        """Turn by turn until closed. Nothing that goes wrong in one turn ends the session."""
         while not self._closing.is_set():
-            self._guarded(self._turn)
-
-    def _guarded(self, action: Callable[[], None]) -> None:
-        """Nothing that goes wrong in one turn ends the session."""
-        try:
-            action()
-        except Exception as error:
-            log.debug("in the loop", exc_info=True)
-            self._fail(f"{type(error).__name__}: {error}")
+            try:
+                self._turn()
+            except Exception as error:
+                log.debug("in the loop", exc_info=True)
+                self._take_back(f"{type(error).__name__}: {error}")
 
     def _turn(self) -> None:
         """One round of the loop: commands, then the steps that are due, then a frame, then sleep."""
@@ -153,7 +155,10 @@ class Session:
 
     def _drain(self) -> bool:
         """Obeys the commands that wait; whether there were any."""
+        end = time.perf_counter() + LONGEST_ROUND
         for count in range(MOST_A_ROUND):
+            if time.perf_counter() > end:
+                break
             try:
                 command = self._queue.get_nowait()
             except queue.Empty:
@@ -166,9 +171,7 @@ class Session:
         try:
             self._simulation.step()
         except StepError as error:
-            self._stop_recording()
-            self._history.go_back()
-            self._fail(f"{error}; gone back to the state before it")
+            self._take_back(str(error))
             return
         self._history.stepped()
         self._clock.count()
@@ -177,8 +180,7 @@ class Session:
         try:
             self._recorder.show(frame)
         except Exception as error:
-            self._notice = f"the recording ended: {error}"
-            log.warning(self._notice)
+            self._tell(f"the recording ended: {error}")
         self._publish(frame)
 
     def _publish(self, frame: Frame) -> None:
@@ -206,13 +208,15 @@ class Session:
         )
         return self._simulation.frame(commands, status)
 
-    def _fail(self, text: str) -> None:
-        """Stands still and says why."""
-        log.error(text)
-        self._failure = text
+    def _take_back(self, failure: str) -> None:
+        """Brings back the last good state, stands still and says why. A recording ends with that state."""
+        self._stop_recording()
+        self._history.go_back()
+        self._applied.clear()
+        self._failure = f"{failure}; gone back to the state before it"
         self._paused = True
-        self._frame = self._make_frame()
-        self._publish(self._frame)
+        log.error(self._failure)
+        self._publish(self._make_frame())
 
     # --- commands -----------------------------------------------------------------------------------------------
 
@@ -220,6 +224,8 @@ class Session:
         """Does what a command asks; one that cannot be done is logged, and nothing changes."""
         try:
             if isinstance(command, ask.PhysicsCommand):
+                if len(self._applied) >= MOST_A_STEP:
+                    raise ValueError(f"commands: must be at most {MOST_A_STEP} between two steps")
                 self._simulation.apply(command)
                 self._history.applied(command)
                 self._applied.append(command.to_dict())
@@ -261,6 +267,7 @@ class Session:
 
     def _begin(self, scene: Scene) -> None:
         """A scene begins. The same one again keeps the settings; another one brings its own, but for the solver's."""
+        self._failure = self._notice = ""
         self._stop_recording()
         old = self._simulation
         settings = old.world.settings.to_dict()
@@ -270,14 +277,22 @@ class Session:
         self._simulation.content = old.content + 1
         self._history = History(self._simulation)
         self._applied.clear()
-        self._failure = self._notice = ""
         self._clock.restart()
 
     def _start_recording(self) -> None:
+        self._stop_recording()
         self._applied.clear()  # what was done before the recording's start is in its snapshot
         self._recorder.start(self._simulation)
 
     def _stop_recording(self) -> None:
-        finished = self._recorder.stop()
-        if finished is not None:
-            self._notice = f"recorded {finished.name}"
+        try:
+            finished = self._recorder.stop()
+        except Exception as error:
+            self._tell(f"the recording ended: {error}")
+        else:
+            if finished is not None:
+                self._notice = f"recorded {finished.name}"
+
+    def _tell(self, notice: str) -> None:
+        self._notice = notice
+        log.warning(notice)

@@ -28,7 +28,7 @@ EXCEPTIONS = {
     "engine/simd.py": {"llvmlite"},
     # The command line wires everything together ...
     "sandbox/cli.py": {"web", "recordings", "viser", "rerun"},
-    "sandbox/commands_cli/": {"web", "recordings", "viser", "rerun"},
+    "sandbox/verbs/": {"web", "recordings", "viser", "rerun"},
     # ... and the engines to compare with are an extra.
     "sandbox/lab/": {"pymunk"},
 }

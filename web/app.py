@@ -34,8 +34,7 @@ class App:
         pointer = Pointer(desk, self._page, spawn)
         self._page.listeners += [panel.update for panel in panels]
         self._page.listeners.append(pointer.update)
-        self.show(session.frame)
-        session.add_viewer(self)
+        session.add_viewer(self)  # which shows us the latest frame
         self._page.open()
 
     def show(self, frame: Frame) -> None:

@@ -48,10 +48,10 @@ class Page:
         self.publisher.close()
         stop_server(self.server)
 
-    def notify(self, title: str, body: str, is_good: bool = True) -> None:
-        """Tell every client."""
+    def notify(self, title: str, text: str) -> None:
+        """Tell every client, for a while."""
         for client in self.server.get_clients().values():
-            client.add_notification(title, body, auto_close_seconds=8.0, color="teal" if is_good else "red")
+            client.add_notification(title, text, auto_close_seconds=8.0)
 
     def _draw(self, frame: Frame) -> None:
         if frame.scene != self._scene:

@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from engine import Settings, World
+from engine import Settings, World, validate
 
 Build = Callable[[World], None]
 View = tuple[float, float, float]
@@ -56,8 +56,11 @@ def scene(name: str, *, view: View = (0.0, 7.0, 20.0), **settings: Any) -> Calla
 
 def find_scene(name: str) -> Scene:
     """The scene of that name, by its full name or, whatever the case, by the part after the folder."""
+    if not isinstance(name, str):
+        raise UnknownScene(str(validate.refuse("scene", name, "the name of a scene")))
     if name in SCENES:
         return SCENES[name]
+    name = name[:80]
     wanted = name.casefold()
     matches = [s for s in SCENES.values() if wanted in (s.name.casefold(), s.name.casefold().split("/")[-1])]
     if len(matches) == 1:

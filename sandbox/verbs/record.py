@@ -46,8 +46,8 @@ def run(options: argparse.Namespace) -> int:
     simulation = Simulation(scene_named(options.scene), options.dt, **settings)
     if not options.output.parent.is_dir():
         raise BadInput(f"{options.output}: its folder does not exist")
-    if options.output.is_dir():
-        raise BadInput(f"{options.output}: is a folder")
+    if options.output.exists() and not options.output.is_file():  # a folder, a device: nothing to put a file over
+        raise BadInput(f"{options.output}: is no file that could be written anew")
     with stop_requested() as stop:
         compile_all(say, [simulation.world.precision])
         started = time.perf_counter()

@@ -53,7 +53,10 @@ def _open_rerun(file: Path) -> int:
 def _serve(options: argparse.Namespace, recording: Any) -> int:
     from web import ListenError, ReplayApp
 
-    frames = RecordedFrames(recording)
+    try:
+        frames = RecordedFrames(recording)
+    except (ValueError, KeyError, TypeError) as error:
+        raise BadInput(f"{options.file}: cannot be played: {error}") from None
     if not len(frames):
         raise BadInput(f"{options.file}: holds no step")
     with stop_requested() as stop:

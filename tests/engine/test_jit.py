@@ -209,6 +209,16 @@ def test_cache_folder(tree: Path, tmp_path_factory: pytest.TempPathFactory) -> N
         assert run(read_only, "alone", XDG_CACHE_HOME=str(read_only / "nowhere")) == {"alone": [7, 0, 1]}
 
 
+def test_each_kernel_keeps_its_last_few_versions(tree: Path) -> None:
+    for number in range(9):
+        write(tree, {"package/helper.py": HELPER.replace("return 1", f"return {number}")})
+        assert run(tree, "package.absolute") == {"package.absolute": [number, 0, 1]}
+    assert len(list(tree.rglob("absolute.run-*.nbi"))) == 6
+    assert len(list(tree.rglob("absolute.run-*.nbc"))) == 6
+    write(tree, {"package/helper.py": HELPER.replace("return 1", "return 4")})
+    assert run(tree, "package.absolute") == {"package.absolute": [4, 1, 0]}
+
+
 def test_half_written_neighbour_does_no_harm(tree: Path) -> None:
     write(tree, {"package/broken.py": "def f(:"})
     assert run(tree, "package.absolute") == {"package.absolute": [1, 0, 1]}

@@ -71,7 +71,12 @@ def contacts_on_face(reference: PlacedBox, other: PlacedBox, normal: np.ndarray)
     """
     corners = other.corners
     edges = [(corners[k], corners[(k + 1) % 4]) for k in range(4)]
-    lowest = min(edges, key=lambda edge: (edge[0] + edge[1]) @ normal)
+
+    def facing(edge: tuple[np.ndarray, np.ndarray]) -> float:
+        outward = 0.5 * (edge[0] + edge[1]) - other.center
+        return float(outward @ normal / np.linalg.norm(outward))
+
+    lowest = min(edges, key=facing)
     side = np.array([-normal[1], normal[0]])
     along_x = abs(reference.axes[0] @ side) > 0.5
     reach = reference.half[0] if along_x else reference.half[1]

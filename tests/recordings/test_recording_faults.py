@@ -186,13 +186,27 @@ def test_a_slow_disk_slows_the_loop_and_loses_nothing(tmp_path: Path, monkeypatc
     assert recordings.compare(recordings.read(path), frames) is None
 
 
-def test_close_leaves_no_thread_and_no_open_file(tmp_path: Path) -> None:
-    descriptors = Path("/proc/self/fd")
-    if not descriptors.is_dir():
-        pytest.skip("open files are counted in /proc, which this system does not have")
-    recordings.Writer(tmp_path / "warm.rrd", Start()).close()
-    files, threads = len(os.listdir(descriptors)), threading.active_count()
-    for i in range(5):
-        recordings.Writer(tmp_path / f"{i}.rrd", Start()).close()
-    assert threading.active_count() == threads
-    assert len(os.listdir(descriptors)) <= files
+@pytest.mark.parametrize("fails", [False, True])
+def test_close_leaves_no_thread_and_no_open_file(tmp_path: Path, fails: bool) -> None:
+    tasks, descriptors = Path("/proc/self/task"), Path("/proc/self/fd")
+    if not tasks.is_dir():
+        pytest.skip("threads and open files are counted in /proc, which this system does not have")
+
+    def record(name: str) -> None:
+        writer = recordings.Writer(tmp_path / name, Start())
+        if fails:
+            writer.path.unlink()
+            with pytest.raises(recordings.RecordingError):
+                writer.close()
+        else:
+            writer.close()
+
+    record("first.rrd")
+    before = len(os.listdir(tasks)), len(os.listdir(descriptors))
+    for i in range(8):
+        record(f"{i}.rrd")
+    deadline = time.monotonic() + 5  # rerun's threads end a moment after their stream
+    while len(os.listdir(tasks)) > before[0] and time.monotonic() < deadline:
+        time.sleep(0.05)
+    assert len(os.listdir(tasks)) <= before[0]
+    assert len(os.listdir(descriptors)) <= before[1]

@@ -10,6 +10,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+
+from engine import CONTACT_RECORD, JOINT_RECORD, Diagnostics, Settings
 from sandbox.commands import (
     LoadScene,
     Pause,
@@ -22,8 +24,6 @@ from sandbox.commands import (
     StartRecording,
     StopRecording,
 )
-
-from engine import CONTACT_RECORD, JOINT_RECORD, Diagnostics, Settings
 from sandbox.frame import Frame
 from sandbox.scenes import SCENES
 from sandbox.viewer import Viewer
@@ -71,6 +71,8 @@ def pyramid(rows: int) -> list[BODY]:
 class FakeSession:
     """What the page needs of a session. `submitted` is what the tests look at."""
 
+    can_record = True
+
     def __init__(self, bodies: list[BODY], runs: bool = True, **changes: Any) -> None:
         self.submitted: list[Any] = []
         self.last_recording: Path | None = None
@@ -83,14 +85,16 @@ class FakeSession:
         if runs:
             self._thread.start()
 
-    def submit(self, command: Any) -> None:
+    def submit(self, command: Any) -> bool:
         self.submitted.append(command)
         with self._lock:
             self.frame = self._applied(command)
         self.publish()
+        return True
 
     def add_viewer(self, viewer: Viewer) -> None:
         self._viewers.append(viewer)
+        viewer.show(self.frame)
 
     def publish(self, **changes: Any) -> None:
         with self._lock:
@@ -122,7 +126,7 @@ class FakeSession:
         elif isinstance(command, SetIterations):
             settings = replace(settings, iterations=command.iterations)
         elif isinstance(command, SetSwitch):
-            settings = replace(settings, **{command.name: command.on})
+            settings = replace(settings, **{command.switch: command.on})
         elif isinstance(command, SetSpeed):
             status = replace(status, speed=command.speed)
         elif isinstance(command, Pause | Play):
@@ -132,7 +136,7 @@ class FakeSession:
         elif isinstance(command, StopRecording):
             status = replace(status, recording="")
         elif isinstance(command, LoadScene):
-            return replace(frame, scene=command.name, content=frame.content + 1)
+            return replace(frame, scene=command.scene, content=frame.content + 1)
         return replace(frame, settings=settings, status=status)
 
     def _run(self) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
@@ -55,6 +56,7 @@ class RawClient:
     def __init__(self, socket: ClientConnection) -> None:
         self.socket = socket
         self.messages: list[dict[str, Any]] = []
+        self._seen = 0
         self.send(CAMERA)
         self.read_until("ReplayDoneMessage")
 
@@ -73,10 +75,15 @@ class RawClient:
         raise LookupError(label)
 
     def read_until(self, kind: str, timeout: float = 5.0) -> dict[str, Any]:
-        while True:
-            for message in self.read(timeout):
-                if message["type"] == kind:
-                    return message
+        """The next message of this kind, after those that were looked at already."""
+        end = time.monotonic() + timeout
+        while time.monotonic() < end:
+            while self._seen < len(self.messages):
+                self._seen += 1
+                if self.messages[self._seen - 1]["type"] == kind:
+                    return self.messages[self._seen - 1]
+            self.read(timeout)
+        raise TimeoutError(kind)
 
     def read(self, timeout: float = 5.0) -> list[dict[str, Any]]:
         raw = self.socket.recv(timeout)

@@ -11,9 +11,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-from sandbox.commands import SetIterations, StartRecording, StopRecording
 
 from engine import CONTACT_RECORD, JOINT_RECORD
+from sandbox.commands import SetIterations, StartRecording, StopRecording
 from sandbox.frame import Status
 from tests.web.fake_session import BODY, FakeSession, make_frame, pyramid, wait_until
 from tests.web.raw_client import raw_client
@@ -168,7 +168,8 @@ def test_a_recording_is_announced_and_sent_to_the_one_who_asks(tmp_path: Path) -
             session.wait_for(StopRecording)
             session.last_recording = tmp_path / "run.rrd"
             session.last_recording.write_bytes(b"recorded" * 1000)
-            client.read_until("NotificationShowMessage")
+            session.publish(status=Status(notice="recorded run.rrd"))
+            assert client.read_until("NotificationShowMessage")["props"]["body"] == "recorded run.rrd"
             client.set("Download", True)
             assert client.read_until("FileTransferStartDownload")["filename"] == "run.rrd"
             assert client.read_until("FileTransferPart")["content"] == b"recorded" * 1000

@@ -11,9 +11,9 @@ import urllib.request
 from typing import Any
 
 import pytest
-from sandbox.commands import Grab, MoveHand, Pause, Release, SetGravity, SetIterations, SetSwitch, Spawn
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 
+from sandbox.commands import Grab, MoveHand, Pause, Release, SetGravity, SetIterations, SetSwitch, Spawn
 from tests.web.fake_session import FakeSession, pyramid, wait_until
 from tests.web.raw_client import CAMERA, CLICK, DRAG, raw_client
 from web import App, ListenError, PortInUse
@@ -250,7 +250,7 @@ def test_one_who_comes_late_sees_everything(served: Served) -> None:
 def test_a_refused_command_is_logged_and_nothing_else(served: Served, caplog: pytest.LogCaptureFixture) -> None:
     session, app = served
 
-    def refuse(_: Any) -> None:
+    def refuse(_: Any) -> bool:
         raise ValueError("no room for it")
 
     keep, session.submit = session.submit, refuse  # type: ignore[method-assign]

@@ -42,7 +42,8 @@ class Desk:
     def submit(self, make: Make) -> None:
         """Queue the command that `make` returns; values that a command refuses are logged, and nothing else happens."""
         try:
-            self.session.submit(make())
+            if not self.session.submit(make()):
+                log.warning("ignored: too many commands wait already")
         except ValueError as error:
             log.warning("ignored: %s", error)
         except Exception as error:

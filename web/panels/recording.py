@@ -6,8 +6,8 @@ import html
 from pathlib import Path
 
 import viser
-from sandbox.commands import StartRecording, StopRecording
 
+from sandbox.commands import StartRecording, StopRecording
 from sandbox.frame import Frame
 from web.guard import log
 from web.panels.desk import Desk, Event
@@ -43,15 +43,12 @@ class RecordingPanel:
             self._finished = finished
             self._download.disabled = False
             self._line.content = _line(f"saved {finished.name} ({_size(finished)})")
-            self._desk.page.notify("Recording saved", f"{finished.name} is ready for download.")
 
     def _show(self, recording: str) -> None:
         self._switch.label = "Stop recording" if recording else "Record"
         self._switch.icon = viser.Icon.PLAYER_STOP if recording else viser.Icon.PLAYER_RECORD
         self._switch.color = "red" if recording else None
         self._line.content = _line(f"recording {Path(recording).name}" if recording else "not recording")
-        if not recording and self._desk.session.last_recording == self._finished:
-            self._desk.page.notify("Recording failed", "The file could not be finished; see the log.", is_good=False)
 
     async def _on_download(self, event: Event) -> None:
         """To the client who asked, and to no other."""

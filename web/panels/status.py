@@ -33,8 +33,10 @@ class StatusPanel:
     def __init__(self, desk: Desk) -> None:
         with desk.hud.add_tab("Status", viser.Icon.ACTIVITY):
             self._view = desk.gui.add_html(status_html(None, {}))
+        self._page = desk.page
         self._next = 0.0
-        self._notices = ""
+        self._warnings = ""
+        self._notice = ""
         self._stage_ms: dict[str, float] = {}
 
     def update(self, frame: Frame) -> None:
@@ -42,12 +44,20 @@ class StatusPanel:
             name: ms if name not in self._stage_ms else self._stage_ms[name] * (1 - SMOOTHING) + ms * SMOOTHING
             for name, ms in frame.stage_ms.items()
         }
-        notices = _notices(frame)
+        self._tell(frame.status.notice)
+        warnings = _warnings(frame)
         now = time.monotonic()
         # A paused session sends a last frame and no further one: that one must not fall into the interval.
-        if now >= self._next or notices != self._notices or frame.status.paused:
-            self._next, self._notices = now + INTERVAL, notices
+        if now >= self._next or warnings != self._warnings or frame.status.paused:
+            self._next, self._warnings = now + INTERVAL, warnings
             self._view.content = status_html(frame, self._stage_ms)
+
+    def _tell(self, notice: str) -> None:
+        """What the session has to say once, as a message that goes away."""
+        if notice != self._notice:
+            self._notice = notice
+            if notice:
+                self._page.notify("tumble", notice)
 
 
 def status_html(frame: Frame | None, stage_ms: dict[str, float], is_live: bool = True) -> str:
@@ -66,8 +76,8 @@ def status_html(frame: Frame | None, stage_ms: dict[str, float], is_live: bool =
         ("ms per step", f"{sum(stage_ms.values()):.2f}"),
     ]
     if not is_live:
-        rows = [row for row in rows if row[0] != "steps/s"]
-    text = _notices(frame) + "".join(_ROW.format(html.escape(name), value) for name, value in rows)
+        rows = [row for row in rows if row[0] not in ("steps/s", "ms per step")]
+    text = _warnings(frame) + "".join(_ROW.format(html.escape(name), value) for name, value in rows)
     return _PAGE.format(text + _bars(stage_ms))
 
 
@@ -79,7 +89,7 @@ def _bars(stage_ms: dict[str, float]) -> str:
     )
 
 
-def _notices(frame: Frame) -> str:
+def _warnings(frame: Frame) -> str:
     """What needs attention. Text from elsewhere is escaped: this is HTML."""
     status, text = frame.status, ""
     if status.failure:

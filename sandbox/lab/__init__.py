@@ -1,0 +1,1 @@
+"""The laboratory: what accuracy and speed the engine really has, measured."""

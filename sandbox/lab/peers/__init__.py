@@ -1,0 +1,14 @@
+"""Engines to compare with: one file each, one line here."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from sandbox.lab.peers.box2d_lite import Box2DLite
+from sandbox.lab.peers.protocol import CannotMirror, Peer, PeerError, PeerWorld
+from sandbox.lab.peers.pymunk_peer import Pymunk
+
+INSTALLABLE: tuple[Callable[[], Peer], ...] = (Pymunk,)
+"""What `tumble bench --peers` compares with: all from the extra `peers`, none imported before it is asked for."""
+
+__all__ = ["INSTALLABLE", "Box2DLite", "CannotMirror", "Peer", "PeerError", "PeerWorld", "Pymunk"]

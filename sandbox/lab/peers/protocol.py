@@ -1,0 +1,45 @@
+"""What the bench asks of another engine."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+import numpy as np
+
+from engine import World
+from sandbox.lab.timing import Times
+
+
+class PeerError(Exception):
+    """The engine cannot be used; the message is one line for the user."""
+
+
+class CannotMirror(PeerError):
+    """The engine has no counterpart for something in this scene."""
+
+
+class PeerWorld(Protocol):
+    """A copy of one of our worlds in another engine."""
+
+    def step(self, count: int) -> Times:
+        """Makes `count` steps and times each."""
+
+    def positions(self) -> np.ndarray:
+        """(N, 2) of the bodies, in our order of creation [m]."""
+
+    def close(self) -> None:
+        """Frees what it holds; it is not stepped again."""
+
+
+class Peer(Protocol):
+    """Another engine. Making one raises PeerError if it is not to be had here."""
+
+    @property
+    def name(self) -> str:
+        """As the report calls it."""
+
+    def mirror(self, world: World, dt: float) -> PeerWorld:
+        """Copies the world as it stands now; its steps are dt [s]. CannotMirror if that is not possible."""
+
+    def close(self) -> None:
+        """Frees what it holds; it is not asked for worlds again."""

@@ -1,0 +1,149 @@
+"""Mechanics with a known answer, through whole steps."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from engine import Box, Circle, World
+from tests.engine.worlds import DT, PRECISIONS, floor, run
+
+G = 10.0
+
+
+def incline(angle: float, friction: float, precision: str = "double", iterations: int = 30) -> World:
+    """A floor that gravity is tilted over, so that bodies slide towards +x."""
+    world = World(gravity=(G * math.sin(angle), -G * math.cos(angle)), precision=precision, iterations=iterations)
+    floor(world, friction)
+    return world
+
+
+@pytest.mark.parametrize("friction", [0.1, 0.3, 0.8])
+def test_sliding_stops_where_friction_says(friction: float) -> None:
+    # v falls by mu g dt each step; symplectic Euler moves with the new speed, so it stops v dt / 2 short of v^2 / 2 mu g
+    world = incline(0.0, friction)
+    box = world.create_body(Box(2, 0.1), position=(0, 0.045), friction=friction, velocity=(4, 0))
+    speeds, v = [], 4.0
+    while v > 0:
+        v = max(v - friction * G * DT, 0.0)
+        speeds.append(v)
+    run(world, len(speeds) + 5)
+    assert box.velocity.x == pytest.approx(0.0, abs=1e-9)
+    assert box.position.x == pytest.approx(DT * sum(speeds), rel=1e-6)
+    assert box.position.x == pytest.approx(16 / (2 * friction * G) - 4 * DT / 2, abs=friction * G * DT * DT)
+
+
+@pytest.mark.parametrize("precision", PRECISIONS)
+@pytest.mark.parametrize("friction", [0.2, 0.5])
+def test_friction_angle(friction: float, precision: str) -> None:
+    critical = math.atan(friction)
+    for angle in (critical - 0.02, critical + 0.02):
+        world = incline(angle, friction, precision)
+        box = world.create_body(Box(2, 0.1), position=(0, 0.045), friction=friction)
+        run(world, 120)
+        expected = max(G * (math.sin(angle) - friction * math.cos(angle)), 0.0) * 120 * DT
+        assert box.velocity.x == pytest.approx(expected, rel=1e-3, abs=1e-5)
+        if angle < critical:
+            assert box.position.x == pytest.approx(0.0, abs=1e-4)
+
+
+def test_without_friction_it_slides_freely() -> None:
+    world = incline(0.3, 0.0)
+    box = world.create_body(Box(2, 0.1), position=(0, 0.045), friction=0.7)  # sqrt(0 * 0.7) = 0
+    run(world, 60)
+    assert box.velocity.x == pytest.approx(G * math.sin(0.3), rel=1e-9)
+
+
+@pytest.mark.parametrize("precision", PRECISIONS)
+@pytest.mark.parametrize("angle", [0.1, 0.4])
+def test_circle_rolls_down_with_two_thirds(angle: float, precision: str) -> None:
+    world = incline(angle, 1.0, precision)
+    circle = world.create_body(Circle(0.5), position=(0, 0.499999), friction=1.0)
+    run(world, 60)
+    assert circle.velocity.x == pytest.approx(2 / 3 * G * math.sin(angle), rel=1e-4)
+    assert circle.angular_velocity == pytest.approx(-circle.velocity.x / 0.5, rel=1e-4)  # rolls, clockwise
+
+
+def test_circle_slips_where_friction_is_too_weak_to_roll() -> None:
+    angle, friction = 0.6, 0.1  # rolling needs mu >= tan(angle) / 3
+    world = incline(angle, friction)
+    circle = world.create_body(Circle(0.5), position=(0, 0.499999), friction=friction)
+    run(world, 60)
+    assert circle.velocity.x == pytest.approx(G * (math.sin(angle) - friction * math.cos(angle)), rel=1e-4)
+    assert circle.angular_velocity == pytest.approx(-2 * friction * G * math.cos(angle) / 0.5, rel=1e-4)
+
+
+def test_a_stack_at_rest_carries_the_weight_above() -> None:
+    world = World(precision="double", iterations=50)
+    floor(world)
+    masses = [4.0, 1.0, 2.5, 0.5, 3.0]
+    for k, mass in enumerate(masses):
+        world.create_body(Box(1, 1), position=(0, 0.495 + 0.99 * k), mass=mass)
+    run(world, 300)
+    records = world.contact_records()
+    for below in range(5):
+        between = records[(records["body1"] == below) & (records["body2"] == below + 1)]
+        assert len(between) == 2
+        assert between["normal_impulse"].sum() == pytest.approx(sum(masses[below:]) * G * DT, rel=1e-6)
+        assert between["tangent_impulse"].sum() == pytest.approx(0.0, abs=1e-3)
+
+
+def test_every_action_has_its_reaction() -> None:
+    # contacts give both bodies the same impulse at the same point: neither momentum changes but by rounding
+    rng = np.random.default_rng(7)
+    world = World(gravity=(0, 0), precision="double")
+    for k in range(24):
+        shape = Box(*rng.uniform(0.5, 1.5, 2)) if k % 3 else Circle(rng.uniform(0.3, 0.8))
+        place = np.array([k % 5 - 2, k // 5 - 2]) * 1.6
+        world.create_body(
+            shape,
+            position=tuple(place),
+            angle=rng.uniform(0, 6),
+            velocity=tuple(-place + rng.uniform(-1, 1, 2)),
+            angular_velocity=rng.uniform(-3, 3),
+            friction=0.5,
+        )
+    before = world.diagnostics()
+    most = 0
+    for _ in range(180):
+        world.step(DT)
+        after = world.diagnostics()
+        most = max(most, after.contact_count)
+        assert tuple(after.momentum) == pytest.approx(tuple(before.momentum), abs=1e-12)
+        assert after.angular_momentum == pytest.approx(before.angular_momentum, abs=1e-11)
+    assert most > 20
+    assert after.kinetic_energy < before.kinetic_energy
+
+
+@pytest.mark.parametrize("precision", PRECISIONS)
+def test_a_box_at_rest_stays_at_rest(precision: str) -> None:
+    world = World(precision=precision)
+    floor(world)
+    box = world.create_body(Box(1, 1), position=(0.3, 0.495))
+    run(world, 600)
+    assert tuple(box.position) == pytest.approx((0.3, 0.495), abs=1e-5)
+    assert box.angle == pytest.approx(0.0, abs=1e-6)
+    assert len(world.contact_records()) == 2
+
+
+@pytest.mark.parametrize("precision", PRECISIONS)
+def test_overlap_at_rest_stays_near_the_slop(precision: str) -> None:
+    world = World(precision=precision)
+    floor(world)
+    for k in range(6):
+        world.create_body(Box(1, 1), position=(0, 0.5 + 1.05 * k))
+    run(world, 600)
+    assert 0.005 < world.diagnostics().max_penetration < 0.02
+    assert np.abs(world.velocities).max() < 1e-3
+
+
+def test_a_hit_in_the_middle_does_not_turn_it() -> None:
+    world = World(gravity=(0, 0), precision="double")
+    target = world.create_body(Box(1, 3), position=(1.0, 0))
+    world.create_body(Circle(0.25), position=(0, 0), velocity=(5, 0))
+    run(world, 60)
+    assert target.angular_velocity == 0.0
+    assert target.velocity.x > 0
+    assert target.velocity.y == 0.0
