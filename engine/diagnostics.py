@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+import numpy as np
+
 from engine.jit import kernel
 from engine.state import State
 from engine.tables import DYNAMIC
@@ -34,9 +36,9 @@ def sum_bodies(order, bodies, motions, gravity_x, gravity_y):
         body = bodies[order[rank]]
         if body.kind == DYNAMIC:
             motion = motions[order[rank]]
-            vx = 1.0 * motion.vx
-            vy = 1.0 * motion.vy
-            w = 1.0 * motion.w
+            vx = np.float64(motion.vx)
+            vy = np.float64(motion.vy)
+            w = np.float64(motion.w)
             kinetic += 0.5 * body.mass * (vx * vx + vy * vy) + 0.5 * body.inertia * w * w
             potential -= body.mass * (gravity_x * body.x + gravity_y * body.y)
             momentum_x += body.mass * vx
@@ -53,7 +55,7 @@ def sum_contacts(arbiters, contacts, count):
     for index in range(count):
         for i in range(arbiters[index].count):
             total += 1
-            depth = -1.0 * contacts[index, i].separation
+            depth = -np.float64(contacts[index, i].separation)
             if depth > deepest:
                 deepest = depth
     return deepest, total

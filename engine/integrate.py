@@ -11,8 +11,12 @@ from engine.trigonometry import cos_sin
 
 @kernel
 def apply_forces(order, bodies, motions, steps):
-    """Newton's second law: v += dt (g + F / m), w += dt torque / I. Talk, stage 2 "Apply Forces"."""
+    """Newton's second law: v += dt (g + F / m), w += dt torque / I. Talk, stage 2 "Apply Forces".
+
+    Returns the rank of the first body whose velocity is no longer finite, -1 if there is none.
+    """
     step = steps[0]
+    lost = -1
     for rank in range(len(order)):
         body = bodies[order[rank]]
         if body.kind == DYNAMIC:
@@ -20,6 +24,9 @@ def apply_forces(order, bodies, motions, steps):
             motion.vx += step.dt * (step.gravity_x + motion.inverse_mass * body.force_x)
             motion.vy += step.dt * (step.gravity_y + motion.inverse_mass * body.force_y)
             motion.w += step.dt * (motion.inverse_inertia * body.torque)
+            if lost < 0 and not (np.isfinite(motion.vx) and np.isfinite(motion.vy) and np.isfinite(motion.w)):
+                lost = rank
+    return lost
 
 
 @kernel

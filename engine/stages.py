@@ -55,9 +55,11 @@ def update_arbiters(state: State, settings: Settings) -> None:
 
 
 def forces(state: State, settings: Settings) -> None:
-    """Gravity and applied forces change velocities."""
+    """Gravity and applied forces change velocities. StepError if a body's is no longer finite."""
     bodies, motions, order = _bodies(state)
-    apply_forces(order, bodies, motions, state.steps)
+    lost = apply_forces(order, bodies, motions, state.steps)
+    if lost >= 0:
+        raise StepError(_describe_loss(state, int(order[lost]), "apply forces"))
 
 
 def solve_constraints(state: State, settings: Settings) -> None:
@@ -75,7 +77,9 @@ def positions(state: State, settings: Settings) -> None:
     bodies, motions, order = _bodies(state)
     lost = update_positions(order, bodies, motions, state.steps)
     if lost >= 0:
-        raise StepError(_describe_loss(state, int(order[lost])))
+        row = int(order[lost])
+        unsolved = not np.isfinite([motions[name][row] for name in ("vx", "vy", "w")]).all()
+        raise StepError(_describe_loss(state, row, "solve constraints" if unsolved else "update positions"))
 
 
 STAGES: tuple[tuple[str, Callable[[State, Settings], None]], ...] = (
@@ -89,7 +93,10 @@ STAGES: tuple[tuple[str, Callable[[State, Settings], None]], ...] = (
 
 
 def prepare_step(state: State, settings: Settings, dt: float) -> None:
-    """Writes what holds for the whole step where kernels read it."""
+    """Writes what holds for the whole step where kernels read it, unless it stands there from the step before."""
+    if state.prepared_for is settings and state.prepared_dt == dt:
+        return
+    state.prepared_for, state.prepared_dt = settings, dt
     step = state.steps
     step["dt"] = dt
     step["inverse_dt"] = 1.0 / dt
@@ -107,27 +114,12 @@ def _bodies(state: State) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     return tables["bodies"], tables["motions"], state.bodies.order
 
 
-def _describe_loss(state: State, row: int) -> str:
+def _describe_loss(state: State, row: int, stage: str) -> str:
     """Names the body, its state, and the stage that broke it."""
     bodies, motions, _ = _bodies(state)
     body, motion = bodies[row], motions[row]
-    contacts = state.arbiters.contacts[: state.arbiters.count]
-    joints = state.joints.tables["joints"][state.joints.order]
-    impulses = [
-        contacts["normal_impulse"],
-        contacts["tangent_impulse"],
-        joints["impulse_x"],
-        joints["impulse_y"],
-    ]
-    velocity = [float(motion["vx"]), float(motion["vy"]), float(motion["w"])]
-    if not all(np.isfinite(values).all() for values in impulses):
-        stage = "solve constraints"
-    elif not np.isfinite(velocity).all():
-        stage = "apply forces"
-    else:
-        stage = "update positions"
     return (
         f"step {state.step_count + 1}, stage '{stage}': body {int(body['serial'])} is no longer finite: position "
-        f"({float(body['x']):g}, {float(body['y']):g}), velocity ({velocity[0]:g}, {velocity[1]:g}), "
-        f"angular velocity {velocity[2]:g}"
+        f"({float(body['x']):g}, {float(body['y']):g}), velocity ({float(motion['vx']):g}, {float(motion['vy']):g}), "
+        f"angular velocity {float(motion['w']):g}"
     )

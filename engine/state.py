@@ -45,6 +45,8 @@ class State:
         self.pairs = np.empty((0, 2), np.int64)  # of ranks that may touch
         self.pair_count = 0
         self.steps = empty(1, step_dtype(precision))
+        self.prepared_for: Settings | None = None  # what `steps` was written from
+        self.prepared_dt = 0.0
         self.step_count = 0
         self.time = 0.0  # [s]
         self.stale = True  # bodies or joints came or went since the last refresh

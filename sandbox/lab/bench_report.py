@@ -50,7 +50,7 @@ def _ms(value: float) -> str:
 
 
 def _ratio(ratio: Ratio) -> str:
-    return f"{ratio.median:.2f} ({ratio.low:.2f} to {ratio.high:.2f})"
+    return f"{ratio.median:.3f} ({ratio.low:.3f} to {ratio.high:.3f})"
 
 
 def _rendered(table: Table) -> str:
