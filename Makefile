@@ -13,7 +13,7 @@ ARGS ?=
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-6s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
 
-run: $(STAMP) ## open the sandbox: make run ARGS="--scene ..."
+run: $(STAMP) ## open the sandbox: make run ARGS="--port 9000 --no-open"
 	$(VENV)/bin/tumble run $(ARGS)
 
 test: $(STAMP) ## run the tests: make test ARGS="tests/engine -x"
@@ -23,7 +23,7 @@ check: $(STAMP) ## what CI runs: lint, format, types, and the tests with none sk
 	$(VENV)/bin/ruff check
 	$(VENV)/bin/ruff format --check
 	$(VENV)/bin/mypy
-	TUMBLE_NO_SKIP=1 $(VENV)/bin/python -m pytest $(ARGS)
+	TUMBLE_NO_SKIP=1 $(MAKE) test ARGS="$(ARGS)"
 
 bench: $(STAMP) ## time the engine: make bench ARGS="..."
 	$(VENV)/bin/tumble bench $(ARGS)

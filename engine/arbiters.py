@@ -41,12 +41,13 @@ def carry_impulses(old_contacts, old_index, old_count, new_contacts, new_index, 
 
 
 @kernel
-def match_arbiters(old_arbiters, old_contacts, old_total, arbiters, contacts, total, warm_starting):
+def match_arbiters(old_arbiters, old_contacts, old_total, arbiters, contacts, total, steps):
     """Drops the arbiters without contacts, and lets the others carry impulses over from the step before.
 
     Both tables are in ascending order of (serial1, serial2), so one walk along both finds all matches.
     Returns the number of arbiters that are left.
     """
+    warm_starting = steps[0].warm_starting != 0
     kept = 0
     k = 0
     for index in range(total):
@@ -62,7 +63,7 @@ def match_arbiters(old_arbiters, old_contacts, old_total, arbiters, contacts, to
             contacts[kept, i].tangent_impulse = 0
         while k < old_total and is_before(old_arbiters[k], arbiter):
             k += 1
-        if warm_starting != 0 and k < old_total and not is_before(arbiter, old_arbiters[k]):
+        if warm_starting and k < old_total and not is_before(arbiter, old_arbiters[k]):
             carry_impulses(old_contacts, k, old_arbiters[k].count, contacts, kept, arbiter.count)
         kept += 1
     return kept

@@ -53,14 +53,14 @@ def update_positions(order, bodies, motions, steps):
     lost = -1
     for rank in range(len(order)):
         body = bodies[order[rank]]
+        body.force_x = 0.0
+        body.force_y = 0.0
+        body.torque = 0.0
         if body.kind == DYNAMIC:
             motion = motions[order[rank]]
             body.x += step.dt * motion.vx
             body.y += step.dt * motion.vy
             body.angle += step.dt * motion.w
-            body.force_x = 0.0
-            body.force_y = 0.0
-            body.torque = 0.0
             turn(body, motion)
             if lost < 0 and not (np.isfinite(body.x) and np.isfinite(body.y) and np.isfinite(body.angle)):
                 lost = rank

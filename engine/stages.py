@@ -48,9 +48,7 @@ def narrow_phase(state: State, settings: Settings) -> None:
 def update_arbiters(state: State, settings: Settings) -> None:
     """Lets contacts that were there in the step before keep their impulses."""
     old, new = state.arbiters, state.found
-    new.count = match_arbiters(
-        old.rows, old.contacts, old.count, new.rows, new.contacts, state.pair_count, settings.warm_starting
-    )
+    new.count = match_arbiters(old.rows, old.contacts, old.count, new.rows, new.contacts, state.pair_count, state.steps)
     state.arbiters, state.found = new, old
 
 

@@ -12,7 +12,7 @@ _PICTURE = (1600, 1000)  # pixels of the camera's picture; only its proportions 
 
 
 def static_entities(view: tuple[float, float, float]) -> list[tuple[str, rr.AsComponents]]:
-    """What never changes: the camera that shows `view` (centre x, y and height [m]), and the looks of marks and curves."""
+    """What never changes: the camera that shows `view` (centre x, y and height [m]), the looks of marks and curves."""
     x, y, height = view
     width_pixels, height_pixels = _PICTURE
     pinhole = rr.Pinhole(

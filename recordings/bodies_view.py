@@ -1,4 +1,4 @@
-"""Bodies as filled shapes: what they look like is sent when it changes, where they are once a step in which they moved."""
+"""Bodies as filled shapes: their looks are sent when they change, their poses once a step in which they moved."""
 
 from __future__ import annotations
 

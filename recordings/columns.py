@@ -23,7 +23,7 @@ class Sheet(NamedTuple):
 class _Batch:
     """A component batch whose arrow array is already there.
 
-    rerun's own `AnyBatchValue` infers a type from the first value that it sees, and drops a column that starts out empty.
+    rerun's own `AnyBatchValue` infers a type from the first value it sees, and drops a column that starts out empty.
     """
 
     def __init__(self, descriptor: rr.ComponentDescriptor, array: pa.Array) -> None:

@@ -1,4 +1,4 @@
-"""Contacts, impulses and joints over the bodies; plots of energy, penetration, counts and stage times; the log of commands."""
+"""Contacts, impulses and joints over the bodies, the plots beside them, and the log of commands."""
 
 from __future__ import annotations
 

@@ -1,7 +1,8 @@
 """A file that rerun fills through a pipe, so that rerun never meets a disk's error.
 
-When a write fails, rerun's own file sink prints a line, drops all that follows, and then hangs at the next disconnect, garbage collection or exit
-now and then (1 of 180 full disks). Here the pipe goes on taking bytes, and the reason is at hand.
+When a write fails, rerun's own file sink prints a line and drops all that follows. Then now and then (1 of 180 full
+disks) it hangs for ever: at disconnect, at a garbage collection or at the program's exit. Here the pipe goes on
+taking bytes, and the reason is at hand.
 """
 
 from __future__ import annotations

@@ -58,9 +58,8 @@ def _chunks_by_path(path: Path) -> dict[str, list[Chunk]]:
     """The chunks under /state."""
     chunks: dict[str, list[Chunk]] = defaultdict(list)
     try:
-        for chunk in read_chunks(path, schema.APPLICATION):
-            if chunk.path.startswith("/state/"):
-                chunks[chunk.path].append(chunk)
+        for chunk in read_chunks(path, schema.APPLICATION, under="/state/"):
+            chunks[chunk.path].append(chunk)
     except FileNotFoundError:
         raise RecordingError(f"{path}: no such file") from None
     except IsADirectoryError:

@@ -1,11 +1,12 @@
 """The rrd container: walks a file's messages and decodes those of its recording.
 
-rerun's own reader ends the whole process with an abort on some single flipped bits, and it stops at a message cut in the middle.
+rerun's own reader aborts the whole process on some single flipped bits, and stops at a message cut in the middle.
 So this page reads the container itself, which is small:
 
     "RRF2", version (4 bytes), options (4 bytes), then messages: kind (u64), length (u64), payload
 
-An arrow message's payload is a protobuf message: 1 store id, 2 compression, 3 size before compression, 5 an arrow IPC stream.
+An arrow message's payload is a protobuf message with the fields 1 store id, 2 compression, 3 size before compression,
+5 an arrow IPC stream.
 The message of kind 0 is the footer: it is missing after a kill.
 """
 
@@ -22,7 +23,7 @@ from recordings.schema import RecordingError
 
 MAGIC = b"RRF2"
 _HEADER_SIZE = 12
-_END, _STORE, _ARROW, _ACTIVATION = _KINDS = range(4)  # kinds of messages
+_END, _ARROW = 0, 2  # kinds of messages; the others name stores and blueprints
 _TRAILER_SIZE = 32  # after the footer
 _FOOTER_MAGIC = b"FOOT"
 _LZ4 = 2  # compression
@@ -37,8 +38,8 @@ class Chunk(NamedTuple):
     batch: pa.RecordBatch
 
 
-def read_chunks(path: Path, application: str) -> Iterator[Chunk]:
-    """The chunks of the file's recording, up to the last whole message.
+def read_chunks(path: Path, application: str, under: str = "/") -> Iterator[Chunk]:
+    """The chunks of the file's recording whose path starts with `under`, up to the last whole message.
 
     Raises:
         RecordingError: the file is no rrd, belongs to another application, or is damaged.
@@ -48,10 +49,8 @@ def read_chunks(path: Path, application: str) -> Iterator[Chunk]:
             raise RecordingError(f"{path}: not a rerun recording (.rrd)")
         ended = False
         for kind, size in _messages(file):
-            if kind not in _KINDS:
-                raise RecordingError(f"{path}: damaged: a message of unknown kind")
             if kind == _ARROW:
-                chunk = _decode(path, file.read(size), application)
+                chunk = _decode(path, file.read(size), application, under)
                 if chunk is not None:
                     yield chunk
             ended = kind == _END
@@ -87,7 +86,7 @@ def _has_footer(file: BinaryIO) -> bool:
     return _FOOTER_MAGIC in file.read()
 
 
-def _decode(path: Path, payload: bytes, application: str) -> Chunk | None:
+def _decode(path: Path, payload: bytes, application: str, under: str) -> Chunk | None:
     try:
         fields = _protobuf(payload)
         store = _protobuf(_bytes(fields[1]))
@@ -95,7 +94,7 @@ def _decode(path: Path, payload: bytes, application: str) -> Chunk | None:
             return None
         owner = _bytes(_protobuf(_bytes(store[3])).get(1, b"")).decode()
         if owner == application:
-            return _decode_arrow(fields)
+            return _decode_arrow(fields, under)
     except (KeyError, IndexError, OverflowError, StopIteration) as error:
         raise RecordingError(f"{path}: damaged: a message cannot be decoded") from error
     except (ValueError, OSError, pa.ArrowException) as error:
@@ -104,8 +103,8 @@ def _decode(path: Path, payload: bytes, application: str) -> Chunk | None:
     raise RecordingError(f"{path}: a recording of {owner!r}, not of {application}")
 
 
-def _decode_arrow(fields: dict[int, int | bytes]) -> Chunk:
-    """The chunk in an arrow message."""
+def _decode_arrow(fields: dict[int, int | bytes], under: str) -> Chunk | None:
+    """The chunk in an arrow message, or None if its path does not start with `under`."""
     stream = _bytes(fields[5])
     if fields.get(2) == _LZ4:
         size = fields[3]
@@ -113,9 +112,12 @@ def _decode_arrow(fields: dict[int, int | bytes]) -> Chunk:
             raise ValueError("a message's size is wrong")
         stream = pa.decompress(stream, decompressed_size=size, codec="lz4_raw", asbytes=True)
     with pa.ipc.open_stream(stream) as reader:
+        path = (reader.schema.metadata or {})[b"rerun:entity_path"].decode()
+        if not path.startswith(under):
+            return None
         batch = reader.read_next_batch()
     batch.validate(full=True)
-    return Chunk((batch.schema.metadata or {})[b"rerun:entity_path"].decode(), batch)
+    return Chunk(path, batch)
 
 
 def _protobuf(data: bytes) -> dict[int, int | bytes]:

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pyarrow as pa
 import rerun as rr
+from rerun_bindings import flush_and_cleanup_orphaned_recordings
 
 from recordings import schema
 from recordings.blueprint import layout, stage_lines, static_entities
@@ -71,7 +72,8 @@ class RrdFile:
 
     def _end(self) -> None:
         self._stream.disconnect()
-        del self._stream  # and with it rerun's two threads
+        del self._stream
+        flush_and_cleanup_orphaned_recordings()  # as rr.init does: without it, two of rerun's threads stay for ever
         try:
             self._disk.close(_FLUSH_SECONDS)
         except OSError as error:

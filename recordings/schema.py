@@ -1,7 +1,8 @@
 """What a recording holds and where: entity paths, tables with their columns, versions, and what is asked of a frame.
 
-A table is one entity of the file with one component a field; each step has one row of it, which holds one value a body (or contact, or joint).
-`ROSTER` and `COMMANDS` have a row only where something changed. Everything that is not under `/state` is there to look at.
+A table is one entity of the file with one component a field; each step has one row of it, which holds one value a body
+(or contact, or joint). `ROSTER` and `COMMANDS` have a row only where something changed. Everything that is not under
+`/state` is there to look at.
 """
 
 from __future__ import annotations

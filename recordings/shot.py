@@ -114,7 +114,7 @@ def step_rows(shots: list[Shot]) -> np.ndarray:
 
 
 def checksum(step: int, parts: Iterable[np.ndarray], commands: Iterable[str]) -> int:
-    """CRC-32 of one step: its number, its rows of every table in the order of EVERY_STEP, then the roster, and its commands.
+    """CRC-32 of one step: its number, its rows of every table in EVERY_STEP, then its roster and its commands.
 
     The STEPS row takes part with its checksum set to zero.
     """

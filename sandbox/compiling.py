@@ -35,7 +35,7 @@ def compile_all(say: Say, precisions: Iterable[str] = ("single",)) -> tuple[int,
     def announce(kernel: str) -> None:
         nonlocal count
         if count == 0:
-            say("compiling the engine: once on this machine, about ten seconds")
+            say("compiling the engine; this is kept on disk, so it waits for it only once:")
         count += 1
         say(f"  {kernel}")
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from engine import Snapshot, StepError
+from engine import Snapshot
 from sandbox.commands import PhysicsCommand
 from sandbox.simulation import Simulation
 
@@ -38,7 +38,7 @@ class History:
                 simulation.apply(command)
             try:
                 simulation.step()
-            except StepError:  # cannot be: these steps were good before; better an older state than none
+            except Exception:  # cannot be: these steps were good before; better an older state than none
                 simulation.restore(self._snapshot, self._extras)
                 break
         self._keep()

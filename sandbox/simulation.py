@@ -12,6 +12,7 @@ import numpy as np
 
 from engine import Body, Box, Snapshot
 from engine.constants import float32_value
+from engine.shapes import SHAPES
 from sandbox.commands import PhysicsCommand
 from sandbox.frame import Frame, Status
 from sandbox.hands import Hand, pull
@@ -100,9 +101,6 @@ class Simulation:
         """What there is to see now."""
         world = self.world
         records = world.body_records()
-        sizes = np.stack([2.0 * records["half_x"], 2.0 * records["half_y"]], axis=1)
-        circles = records["shape_kind"] == 1
-        sizes[circles, 0] = records["half_x"][circles]
         frame = Frame(
             scene=self.scene.name,
             step=world.step_count,
@@ -111,7 +109,7 @@ class Simulation:
             serials=records["serial"],
             body_kinds=records["kind"].astype(np.uint8),
             shape_kinds=records["shape_kind"].astype(np.uint8),
-            sizes=sizes,
+            sizes=shape_sizes(records),
             positions=np.array(world.positions),
             angles=np.array(world.angles),
             velocities=np.array(world.velocities),
@@ -129,3 +127,12 @@ class Simulation:
             if isinstance(value, np.ndarray):
                 value.flags.writeable = False
         return frame
+
+
+def shape_sizes(records: np.ndarray) -> np.ndarray:
+    """(N, 2) sizes of bodies as a Frame has them, from their records [m]."""
+    sizes = np.empty((len(records), 2))
+    for kind, shape in enumerate(SHAPES):
+        own = records["shape_kind"] == kind
+        sizes[own, 0], sizes[own, 1] = shape.sizes(records["half_x"][own], records["half_y"][own])
+    return sizes

@@ -7,6 +7,7 @@ a turned camera back does the other. Panning and zooming stay free.
 from __future__ import annotations
 
 import math
+import time
 
 import numpy as np
 import viser
@@ -16,6 +17,7 @@ from web.stage import Stage
 FIELD_OF_VIEW = 0.1  # rad, vertical
 LEAST_ASPECT = 1.5  # a scene's view is as wide as this times its height; narrower windows look from further away
 TILT = 1e-3  # as a share of the distance: less is rounding
+SETTLE_TIME = 1.5  # s in which a client's camera may still report where it was before it was told where to be
 NEAREST, FURTHEST = 0.03, 12.0  # how far one may zoom, relative to the scene's own distance
 
 
@@ -26,6 +28,7 @@ class Camera:
         self._server = server
         self._stage = Stage(0.0, 0.0, 20.0)
         self._aimed: dict[int, tuple[float, float, float]] = {}  # client -> where we put its camera
+        self._told: dict[int, float] = {}  # client -> when
         server.initial_camera.fov = FIELD_OF_VIEW
         server.initial_camera.up = (0.0, 1.0, 0.0)
         server.on_client_connect(self._on_connect)
@@ -48,6 +51,7 @@ class Camera:
             return
         (x, y), distance = _center(stage), _distance(stage, camera.aspect)
         self._aimed[client.client_id] = (x, y, distance)
+        self._told[client.client_id] = time.monotonic()
         with client.atomic():
             camera.near, camera.far = distance * NEAREST / 2, distance * FURTHEST * 2
             camera.min_orbit_distance, camera.max_orbit_distance = distance * NEAREST, distance * FURTHEST
@@ -60,25 +64,33 @@ class Camera:
 
     async def _on_disconnect(self, client: viser.ClientHandle) -> None:
         self._aimed.pop(client.client_id, None)
+        self._told.pop(client.client_id, None)
 
     async def _on_move(self, camera: viser.CameraHandle) -> None:
-        aimed = self._aimed.get(camera.client.client_id)
-        if aimed is not None and np.allclose(camera.position, aimed, rtol=1e-4):
+        number = camera.client.client_id
+        aimed = self._aimed.get(number)
+        if not _is_upright(camera):
+            if time.monotonic() - self._told.get(number, 0.0) < SETTLE_TIME:
+                self.aim(camera.client)  # it reports from before it was told: where it was must not count
+            else:
+                _put_upright(camera)
+        elif aimed is not None and np.allclose(camera.position, aimed, rtol=1e-4):
             # Nobody moved it: then it was the window that changed its shape, or the panel that took a part of it.
             if not math.isclose(aimed[2], _distance(self._stage, camera.aspect), rel_tol=1e-4):
                 self.aim(camera.client)
-        _keep_upright(camera)
 
 
-def _keep_upright(camera: viser.CameraHandle) -> None:
-    (x, y, _), target = camera.position, camera.look_at
-    distance = max(math.dist(camera.position, target) + float(target[2]), 1e-3)  # flying down is zooming in
-    slack = TILT * distance
-    is_straight = abs(x - target[0]) < slack and abs(y - target[1]) < slack and abs(target[2]) < slack
-    if is_straight and camera.up_direction[1] > 1.0 - TILT:
-        return
+def _is_upright(camera: viser.CameraHandle) -> bool:
+    away = np.abs(camera.position - camera.look_at)[:2].max() + abs(camera.look_at[2])
+    return bool(away < TILT * abs(camera.position[2]) and camera.up_direction[1] > 1.0 - TILT)
+
+
+def _put_upright(camera: viser.CameraHandle) -> None:
+    """Where it looked stays in the middle, as far away as it was; to fly down is to zoom in."""
+    x, y, z = (float(value) for value in camera.look_at)
+    distance = max(math.dist(camera.position, camera.look_at) + z, 1e-3)
     with camera.client.atomic():
-        _look_down(camera, float(target[0]), float(target[1]), distance)
+        _look_down(camera, x, y, distance)
     camera.client.flush()
 
 

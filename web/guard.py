@@ -9,6 +9,7 @@ from __future__ import annotations
 import asyncio
 import ipaddress
 import logging
+import socket
 import time
 from collections.abc import Awaitable, Callable
 from http import HTTPStatus
@@ -40,7 +41,8 @@ class Guard:
     """One for a page. `open` lets the browsers in, which wait at the door until the page is complete."""
 
     def __init__(self, host: str) -> None:
-        self._names = {"localhost", host.lower()}
+        name = socket.gethostname().lower()
+        self._names = {"localhost", host.lower(), name, f"{name}.local"}
         self._server: viser.ViserServer | None = None
         self._opened = asyncio.Event()
         self._clients = 0

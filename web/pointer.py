@@ -9,9 +9,9 @@ from dataclasses import dataclass
 
 import numpy as np
 import viser
-from sandbox.commands import Grab, MoveHand, Release
 
 from engine import BODY_KINDS, SHAPE_KINDS
+from sandbox.commands import Grab, MoveHand, Release
 from sandbox.frame import Frame
 from web.overlays.overlay import add_lines, lines
 from web.page import Page
@@ -46,7 +46,7 @@ class Pointer:
         self._page = page
         self._spawn = spawn
         self._hands: dict[int, Hand | None] = {}
-        self._pulls = add_lines(page.server.scene, "/hands", HAND, thickness=1.5)
+        self._pulls = add_lines(page.server.scene, "/hands", HAND, thickness=2.5)
         plane = _add_pick_plane(page.server.scene)
         plane.on_click(self._on_click)
         plane.on_drag("left")(self._on_drag)

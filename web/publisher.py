@@ -68,7 +68,7 @@ class Publisher:
         """A fault in one picture must not end all others; it is told once, not sixty times a second."""
         try:
             self._draw(frame)
-        except Exception as error:
+        except Exception as error:  # noqa: BLE001 - as said above
             complaint = f"{type(error).__name__}: {error}"
             if complaint != self._complaint:
                 log.error("a frame could not be drawn: %s", complaint, exc_info=log.isEnabledFor(10))

@@ -12,7 +12,7 @@ import viser
 from sandbox.frame import Frame
 from web.guard import log
 from web.page import Page
-from web.panels.desk import Event, add_hud
+from web.panels.desk import Event, add_hud, small_text
 from web.panels.status import status_html
 from web.panels.view import add_view_controls
 from web.player import TICK, Player
@@ -39,7 +39,7 @@ class ReplayApp:
         view: tuple[float, float, float] = (0.0, 5.0, 20.0),
         host: str = "127.0.0.1",
         port: int = 8080,
-        title: str = "Replay",
+        title: str = "recording",
     ) -> None:
         if len(frames) == 0:
             raise ValueError("the recording has no frames")
@@ -67,7 +67,8 @@ class ReplayApp:
 
     def _add_controls(self, title: str) -> None:
         gui, player = self._page.gui, self._player
-        with gui.add_folder(title):
+        with gui.add_folder("Replay"):
+            gui.add_html(small_text(title))
             self._play = gui.add_button("Pause", icon=viser.Icon.PLAYER_PAUSE, hint="space")
             first, last = round(player.time_of(0), 2), round(player.time_of(player.last), 2)
             last = max(last, first + SLIDER_STEP)  # a recording of one frame still needs a slider
@@ -114,7 +115,7 @@ class ReplayApp:
         try:
             self._frame = self._frames.frame(index)
             self._page.publisher.put(self._frame)
-        except Exception as error:
+        except Exception as error:  # noqa: BLE001 - whatever is wrong with the file, the page stays
             log.error("step %d of the recording cannot be shown: %s", index, error)
             self._player.playing = False
 

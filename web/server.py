@@ -49,6 +49,8 @@ def start_server(host: str, port: int) -> tuple[viser.ViserServer, Guard]:
     # A client that has just left is no news, but viser warns of each message that it can no longer have.
     warnings.filterwarnings("ignore", message="Queued a .* on a closed connection", category=UserWarning)
     _remove_sharing(server)
+    # The browser's tab would be called "Viser", among all its others.
+    server._websock_server.queue_message(_messages.RunJavascriptMessage(f"document.title = {TITLE!r};"))
     server.get_event_loop().set_exception_handler(_log_loop_error)
     return server, guard
 

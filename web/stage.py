@@ -12,17 +12,19 @@ LAYER_GAP = 0.002  # of the view's height: more than the depth buffer's grain, l
 
 
 class Layer(IntEnum):
-    """From the bottom up. The pick plane lies at 0, where a click is worth exact world coordinates."""
+    """From the bottom up. The pick plane lies at 0, where a click is worth exact world coordinates; all else is above,
+    so that the line which viser itself draws there during a drag stays out of sight.
+    """
 
-    BACKDROP = -2
-    GRID = -1
-    RIM = 1
-    FACE = 2
-    MARK = 3  # the radius on a circle; part of the rim's mesh
-    JOINT = 4
-    IMPULSE = 5
-    CONTACT = 6
-    HAND = 7
+    BACKDROP = 1
+    GRID = 2
+    RIM = 3
+    FACE = 4
+    MARK = 5  # the radius on a circle; part of the rim's mesh
+    JOINT = 6
+    IMPULSE = 7
+    CONTACT = 8
+    HAND = 9
 
 
 @dataclass(frozen=True)

@@ -7,6 +7,7 @@ K P = bias - dv - softness P, K being the 2x2 matrix that turns an impulse into 
 
 from __future__ import annotations
 
+from engine.impulses import pull, push
 from engine.jit import kernel
 from engine.lanes import const
 from engine.origin import center_of, origin_of
@@ -14,23 +15,7 @@ from engine.vec2 import Vec2, rotate, spin
 
 
 @kernel
-def push(motion, r, impulse):
-    """Gives a body the impulse at r from its centre: the talk's velocity update."""
-    motion.vx += motion.inverse_mass * impulse.x
-    motion.vy += motion.inverse_mass * impulse.y
-    motion.w += motion.inverse_inertia * (r.x * impulse.y - r.y * impulse.x)
-
-
-@kernel
-def pull(motion, r, impulse):
-    """Gives a body the opposite impulse at r from its centre."""
-    motion.vx -= motion.inverse_mass * impulse.x
-    motion.vy -= motion.inverse_mass * impulse.y
-    motion.w -= motion.inverse_inertia * (r.x * impulse.y - r.y * impulse.x)
-
-
-@kernel
-def effective_mass(joint, motion1, motion2, r1, r2):
+def write_effective_mass(joint, motion1, motion2, r1, r2):
     """Writes the inverse of K = (1/m1 + 1/m2) 1 - [r1]x 1/I1 [r1]x - [r2]x 1/I2 [r2]x, softened [kg]."""
     i1 = motion1.inverse_inertia
     i2 = motion2.inverse_inertia
@@ -62,7 +47,7 @@ def prepare(joints, order, bodies, motions, step):
         joint.r1_y = r1.y
         joint.r2_x = r2.x
         joint.r2_y = r2.y
-        effective_mass(joint, motion1, motion2, r1, r2)
+        write_effective_mass(joint, motion1, motion2, r1, r2)
 
         rate = const(0.0, lane)
         if step.position_correction != 0:

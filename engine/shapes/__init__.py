@@ -7,6 +7,6 @@ from engine.shapes.circle import Circle, circle_bounds
 
 Shape = Box | Circle
 
-SHAPES = (Box, Circle)
+SHAPES: tuple[type[Box] | type[Circle], ...] = (Box, Circle)
 SHAPE_KINDS = tuple(shape.name for shape in SHAPES)
 BOUNDS = (box_bounds, circle_bounds)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 from engine.constants import BOUNDS_MARGIN, BOUNDS_MARGIN_RELATIVE
 from engine.jit import kernel
@@ -39,6 +40,21 @@ class Box:
     def half_extents(self) -> tuple[float, float]:
         """What the body table keeps of it [m]."""
         return 0.5 * self.width, 0.5 * self.height
+
+    @property
+    def extent(self) -> tuple[float, float]:
+        """Width and height of what it fills upright [m]."""
+        return self.width, self.height
+
+    @staticmethod
+    def sizes(half_x: Any, half_y: Any) -> tuple[Any, Any]:
+        """What describes it to the outside, numbers or arrays: full width and height [m]."""
+        return 2.0 * half_x, 2.0 * half_y
+
+    @classmethod
+    def filling(cls, width: float, height: float) -> Box:
+        """The one that fills a rectangle of that width and height [m]."""
+        return cls(width, height)
 
     @staticmethod
     def from_half_extents(half_x: float, half_y: float) -> Box:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 from engine.constants import BOUNDS_MARGIN, BOUNDS_MARGIN_RELATIVE
 from engine.jit import kernel
@@ -38,6 +39,21 @@ class Circle:
     def half_extents(self) -> tuple[float, float]:
         """What the body table keeps of it [m]."""
         return self.radius, 0.0
+
+    @property
+    def extent(self) -> tuple[float, float]:
+        """Width and height of what it fills [m]."""
+        return 2.0 * self.radius, 2.0 * self.radius
+
+    @staticmethod
+    def sizes(half_x: Any, half_y: Any) -> tuple[Any, Any]:
+        """What describes it to the outside, numbers or arrays: radius, and 0 [m]."""
+        return half_x, half_y
+
+    @classmethod
+    def filling(cls, width: float, height: float) -> Circle:
+        """The one that has that width for its diameter [m]; the height plays no part."""
+        return cls(0.5 * width)
 
     @staticmethod
     def from_half_extents(half_x: float, half_y: float) -> Circle:

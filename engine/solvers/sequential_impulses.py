@@ -8,9 +8,9 @@ overlap is pushed out by a bias velocity (position correction). Source: E. Catto
 
 from __future__ import annotations
 
+from engine.impulses import pull, push
 from engine.jit import kernel
 from engine.joints import revolute
-from engine.joints.revolute import pull, push
 from engine.lanes import clamp, const, maximum, minimum
 from engine.vec2 import Vec2, cross, dot, right_of
 

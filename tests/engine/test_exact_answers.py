@@ -22,7 +22,7 @@ def incline(angle: float, friction: float, precision: str = "double", iterations
 
 @pytest.mark.parametrize("friction", [0.1, 0.3, 0.8])
 def test_sliding_stops_where_friction_says(friction: float) -> None:
-    # v falls by mu g dt each step; symplectic Euler moves with the new speed, so it stops v dt / 2 short of v^2 / 2 mu g
+    # v falls by mu g dt each step, and the body moves with the new speed: it stops v dt / 2 short of v^2 / (2 mu g)
     world = incline(0.0, friction)
     box = world.create_body(Box(2, 0.1), position=(0, 0.045), friction=friction, velocity=(4, 0))
     speeds, v = [], 4.0

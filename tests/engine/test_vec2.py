@@ -64,12 +64,12 @@ def test_numpy_leaves_operators_to_vec2() -> None:
 
 
 def test_arrays_and_pairs_outside_kernels() -> None:
-    a, array = Vec2(1.0, 2.0), np.array([10.0, 20.0])
+    a, array, pair = Vec2(1.0, 2.0), np.array([10.0, 20.0]), (1, 1)
     assert (a + array).tolist() == (array + a).tolist() == [11.0, 22.0]
     assert (a - array).tolist() == [-9.0, -18.0]
     assert (array - a).tolist() == [9.0, 18.0]
-    assert a + (1, 1) == Vec2(2.0, 3.0)
-    assert a - [1, 1] == Vec2(0.0, 1.0)
+    assert a + pair == Vec2(2.0, 3.0)
+    assert a - pair == Vec2(0.0, 1.0)
 
 
 @kernel

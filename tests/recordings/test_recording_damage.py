@@ -184,6 +184,24 @@ def test_a_block_that_is_missing(whole: bytes, tmp_path: Path) -> None:
     assert refused >= 5 * 3
 
 
+def test_a_message_with_a_wrong_header(whole: bytes, frames: list[Frame], tmp_path: Path) -> None:
+    """A wrong length looks like a cut, and a wrong kind like an end; the file's real end tells that it is neither."""
+    path = tmp_path / "header.rrd"
+    refused = 0
+    for begin, end in _messages(whole)[::5]:
+        for at, value in ((0, 0), (0, 3), (0, 77), (8, end - begin - 15), (8, 2**40)):
+            damaged = bytearray(whole)
+            damaged[begin + at : begin + at + 8] = value.to_bytes(8, "little")
+            path.write_bytes(damaged)
+            try:
+                recording = recordings.read(path)
+            except recordings.RecordingError:
+                refused += 1
+            else:
+                assert recordings.compare(recording, frames) is None
+    assert refused > 20
+
+
 def _messages(data: bytes) -> list[tuple[int, int]]:
     """Begin and end of every message."""
     found, at = [], 12

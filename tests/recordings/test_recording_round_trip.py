@@ -167,6 +167,26 @@ def _rows_by_path(path: Path) -> dict[object, int]:
     return rows
 
 
+def test_plots_and_arrows_show_the_numbers(tmp_path: Path) -> None:
+    from recordings.rrd import read_chunks
+
+    frames = list(tumbling(100))
+    shown: dict[str, list[list]] = {}
+    names = {"/diagnostics/": "Scalars:scalars", schema.IMPULSE_ARROWS: "Arrows3D:vectors"}
+    for chunk in read_chunks(write(tmp_path / "p.rrd", frames), schema.APPLICATION):
+        for start, name in names.items():
+            if chunk.path.startswith(start) and name in chunk.batch.schema.names:
+                shown.setdefault(chunk.path, []).extend(chunk.batch.column(name).to_pylist())
+    assert shown[schema.COUNTS] == [[len(f.serials), f.diagnostics.contact_count, len(f.joints)] for f in frames]
+    assert shown[schema.ENERGY] == [[*f.diagnostics[:2], sum(f.diagnostics[:2])] for f in frames]
+    assert shown[schema.PENETRATION] == [[f.diagnostics.max_penetration] for f in frames]
+    assert shown[schema.STAGE_TIMES] == [list(f.stage_ms.values()) for f in frames]
+    vectors = np.array(shown[schema.IMPULSE_ARROWS][-1])
+    lengths = np.hypot(vectors[:, 0], vectors[:, 1])
+    assert (vectors[:, 1] > 0).all(), "the ground pushes upwards"
+    assert 0.0 < lengths.min() < lengths.max() <= 0.1 * Start().view[2] * 1.001
+
+
 def test_our_reader_and_reruns_see_the_same(tmp_path: Path) -> None:
     """The container is read by our own code: a release of rerun that changes it must not go unnoticed."""
     from rerun.chunk import RrdReader

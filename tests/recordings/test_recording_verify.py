@@ -90,7 +90,9 @@ def test_counts(recording: recordings.Recording, frames: list[Frame]) -> None:
 
 def test_first_step_and_first_body_win(recording: recordings.Recording, frames: list[Frame]) -> None:
     changed = with_frame(frames, 4, angles=flipped(frames[4].angles, 0))
-    changed = with_frame(changed, 2, angles=flipped(frames[2].angles, 1), positions=flipped(frames[2].positions, (3, 0)))
+    changed = with_frame(
+        changed, 2, angles=flipped(frames[2].angles, 1), positions=flipped(frames[2].positions, (3, 0))
+    )
     difference = recordings.compare(recording, changed)
     assert difference is not None
     assert (difference.step, difference.body, difference.field) == (2, int(frames[2].serials[1]), "angle")

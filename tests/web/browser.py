@@ -83,7 +83,7 @@ def _dismiss_notifications(page: Page) -> None:
 
 
 def _note(page: Page, kind: str, text: str) -> None:
-    # SwiftShader reports its own slowness, and viser uses old parts of three.js; neither is the page's fault.
-    is_known = any(word in text for word in ("GPU stall", "WebGL", "deprecated"))
-    if kind == "error" or (kind == "warning" and not is_known):
+    # What SwiftShader says of its own slowness, and viser's client of itself, is not about the page.
+    known = ("GPU stall", "WebGL", "deprecated", "passive event listener")
+    if kind in ("error", "warning") and not any(word in text for word in known):
         page.complaints.append(f"{kind}: {text}")  # type: ignore[attr-defined]

@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from sandbox.commands import Grab, MoveHand, Pause, Play, Release, SetGravity, Spawn
 
+from sandbox.commands import Grab, MoveHand, Pause, Play, Release, SetGravity, Spawn
 from sandbox.scenes import SCENES
 from tests.web.browser import CHROMIUM, look, open_page, text_field, to_pixel
 from tests.web.fake_session import BODY, GROUND, FakeSession, wait_until

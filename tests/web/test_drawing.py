@@ -16,12 +16,13 @@ from engine import CONTACT_RECORD, JOINT_RECORD
 from sandbox.commands import SetIterations, StartRecording, StopRecording
 from sandbox.frame import Status
 from tests.web.fake_session import BODY, FakeSession, make_frame, pyramid, wait_until
-from tests.web.raw_client import raw_client
+from tests.web.raw_client import CAMERA, RawClient, raw_client
 from web import App
 from web.overlays import OVERLAYS
 from web.overlays.impulses import Impulses
 from web.overlays.joints import Joints
 from web.page import Page
+from web.panels.plots import Plot, _medians
 from web.panels.status import status_html
 from web.pointer import body_at
 from web.publisher import Publisher
@@ -183,3 +184,49 @@ def test_a_recording_is_announced_and_sent_to_the_one_who_asks(tmp_path: Path) -
 
 def _label(client: Any, label: str) -> bool:
     return any(message.get("updates", {}).get("label") == label for message in client.read())
+
+
+def test_a_tilted_camera_is_put_upright_and_an_early_report_does_not_count(monkeypatch: pytest.MonkeyPatch) -> None:
+    page = Page(lambda _: (2.0, 5.0, 20.0), "127.0.0.1", 0)
+    page._draw(make_frame([WALL]))
+    page.open()
+    tilted = CAMERA | {"position": [3.0, 5.0, 4.0], "look_at": [0.0, 5.0, 0.0]}
+    try:
+        with raw_client(page.url) as client:
+            wait_until(lambda: page.server.get_clients())
+            client.send(tilted)
+            told = _next_place(client)
+            assert told[:2] == [2.0, 5.0]
+            assert told[2] > 190.0
+            monkeypatch.setattr("web.camera.SETTLE_TIME", 0.0)
+            client.send(tilted)
+            wait_until(lambda: _next_place(client) == pytest.approx([0.0, 5.0, 5.0]))
+    finally:
+        page.close()
+
+
+def _next_place(client: RawClient) -> list[float]:
+    """Where the camera is told to be, apart from what holds for those who come later."""
+    while True:
+        message = client.read_until("SetCameraPositionMessage")
+        if not message["initial"]:
+            return list(message["position"])
+
+
+def test_plots_show_the_median_of_each_stage_and_begin_again_with_a_scene() -> None:
+    class Gui:
+        def add_uplot(self, *_: Any, **__: Any) -> Any:
+            return SimpleNamespace(series=None, data=None)
+
+    plot = Plot(Gui(), "ms")  # type: ignore[arg-type]
+    plot.send()
+    assert plot._handle.data is None
+    values = _medians([{"solve": 1.0}, {"solve": 90.0}, {"solve": 2.0, "sleep": 5.0}])
+    assert values == {"solve": 2.0, "sleep": 5.0}
+    plot.add(0.5, values)
+    plot.add(0.6, values)
+    plot.send()
+    np.testing.assert_array_equal(plot._handle.data, [[0.5, 0.6], [2.0, 2.0], [5.0, 5.0]])
+    plot.add(0.7, {"solve": 3.0})  # another solver has other stages
+    plot.send()
+    np.testing.assert_array_equal(plot._handle.data, [[0.7], [3.0]])

@@ -150,6 +150,29 @@ def test_a_flood_slows_down_only_its_sender(served: Served, caplog: pytest.LogCa
     assert "slowed down" in caplog.text
 
 
+def test_who_floods_for_too_long_is_thrown_out(served: Served, monkeypatch: pytest.MonkeyPatch) -> None:
+    session, app = served
+    monkeypatch.setattr("web.guard.PATIENCE", 0.1)
+    with raw_client(app.url) as flooder, raw_client(app.url) as other:
+        for number in range(1500):
+            flooder.set("iterations", 1 + number % 50)
+        with pytest.raises(ConnectionClosed):
+            flooder.read_until("no message")
+        _assert_page_goes_on(session, other)
+
+
+def test_there_is_a_limit_to_the_number_of_clients(served: Served, monkeypatch: pytest.MonkeyPatch) -> None:
+    session, app = served
+    monkeypatch.setattr("web.guard.MOST_CLIENTS", 1)
+    with raw_client(app.url) as first:
+        with pytest.raises(ConnectionClosed), raw_client(app.url):
+            pass
+        _assert_page_goes_on(session, first)
+    wait_until(lambda: not app._page.server.get_clients())
+    with raw_client(app.url) as next_one:
+        _assert_page_goes_on(session, next_one)
+
+
 def test_the_allowance_is_a_burst_and_then_a_rate() -> None:
     allowance = Allowance(per_second=100.0, burst=5.0)
     waits = [allowance.take() for _ in range(15)]

@@ -10,7 +10,7 @@ from web.overlays.overlay import Overlay
 from web.stage import Layer, Stage
 from web.theme import CONTACT
 
-POINT_SIZE = 0.0045  # of the view's height
+POINT_SIZE = 0.004  # of the view's height
 
 
 class Contacts(Overlay):

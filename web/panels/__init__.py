@@ -1,6 +1,7 @@
 """The folders of the control panel, in their order. A further one is one more file and one more line here."""
 
 from web.panels.desk import Desk, Panel
+from web.panels.help import HelpPanel
 from web.panels.physics import PhysicsPanel
 from web.panels.plots import PlotsPanel
 from web.panels.recording import RecordingPanel
@@ -16,6 +17,7 @@ PANELS: tuple[type[Panel], ...] = (
     PhysicsPanel,
     ViewPanel,
     PlotsPanel,
+    HelpPanel,
     RecordingPanel,
 )
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import html
 import time
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, Protocol
@@ -46,7 +47,7 @@ class Desk:
                 log.warning("ignored: too many commands wait already")
         except ValueError as error:
             log.warning("ignored: %s", error)
-        except Exception as error:
+        except Exception as error:  # noqa: BLE001 - no traceback reaches a user, and the page goes on
             log.error("a command failed: %s: %s", type(error).__name__, error)
 
     def on_change(self, control: Any, make: Make) -> None:
@@ -75,6 +76,11 @@ def add_hud(gui: viser.GuiApi) -> viser.PanelHandle:
     hud = gui.add_panel()
     hud.float(x=HUD_PLACE[0], y=HUD_PLACE[1], width=HUD_PLACE[2])
     return hud
+
+
+def small_text(text: str) -> str:
+    """A line of plain text between controls, as HTML."""
+    return f'<div style="padding:2px 14px 8px;font-size:.82em;opacity:.7">{html.escape(text)}</div>'
 
 
 class Follower:

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from functools import partial
 
-from sandbox.commands import SetGravity, SetIterations, SetSolver, SetSwitch
-
 from engine import SOLVERS
+from sandbox.commands import SetGravity, SetIterations, SetSolver, SetSwitch
 from sandbox.frame import Frame
 from web.panels.desk import Desk, Follower
 

@@ -18,6 +18,7 @@ INTERVAL = 0.1  # s between two points
 SENDS_EVERY = 3  # points: a plot is sent as a whole each time
 POINTS = 240  # the last 24 s
 HEIGHT = 150  # pixels
+AXIS_WIDTH = 58  # pixels: room for six digits
 
 Values = dict[str, float]
 
@@ -29,23 +30,38 @@ class PlotsPanel:
             self._energy = Plot(desk.gui, "energy [J]")
         self._next = 0.0
         self._count = 0
+        self._times: list[Values] = []  # of the frames since the last point
         self._last: tuple[str, float] = ("", -1.0)
 
     def update(self, frame: Frame) -> None:
         now = time.monotonic()
         scene, last_time = self._last
         if scene != frame.scene or frame.time < last_time:
+            self._times.clear()
             self._stages.clear()
             self._energy.clear()
-        elif now < self._next or frame.time == last_time:
+        elif frame.time == last_time:
             return
-        self._next, self._last = now + INTERVAL, (frame.scene, frame.time)
-        self._count += 1
-        self._stages.add(frame.time, frame.stage_ms)
+        self._last = (frame.scene, frame.time)
+        self._times.append(frame.stage_ms)
+        if now >= self._next:
+            self._next = now + INTERVAL
+            self._add_point(frame)
+
+    def _add_point(self, frame: Frame) -> None:
+        self._stages.add(frame.time, _medians(self._times))
         self._energy.add(frame.time, _energies(frame))
+        self._times.clear()
+        self._count += 1
         if self._count % SENDS_EVERY == 0:
             self._stages.send()
             self._energy.send()
+
+
+def _medians(times: list[Values]) -> Values:
+    """Not the mean: one step in which something was compiled would flatten all others."""
+    names = times[-1]
+    return {name: float(np.median([stages[name] for stages in times if name in stages])) for name in names}
 
 
 def _energies(frame: Frame) -> Values:
@@ -65,7 +81,7 @@ class Plot:
             series=_series(("",)),
             title=title,
             scales={"x": uplot.Scale(time=False)},
-            axes=(_axis(), _axis()),
+            axes=(_axis(36), _axis(AXIS_WIDTH)),
             legend=uplot.Legend(show=True, live=False),
             cursor=uplot.Cursor(show=False),
             height=HEIGHT,
@@ -99,7 +115,7 @@ def _series(names: tuple[str, ...]) -> tuple[Any, ...]:
     return (uplot.Series(label="t"), *lines)
 
 
-def _axis() -> uplot.Axis:
+def _axis(size: int) -> uplot.Axis:
     return uplot.Axis(
-        stroke=PLOT_TEXT, grid={"stroke": PLOT_GRID, "width": 1}, ticks={"stroke": PLOT_GRID, "width": 1}, size=42
+        stroke=PLOT_TEXT, grid={"stroke": PLOT_GRID, "width": 1}, ticks={"stroke": PLOT_GRID, "width": 1}, size=size
     )

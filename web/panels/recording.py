@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import html
+import time
 from pathlib import Path
 
 import viser
@@ -10,15 +10,17 @@ import viser
 from sandbox.commands import StartRecording, StopRecording
 from sandbox.frame import Frame
 from web.guard import log
-from web.panels.desk import Desk, Event
+from web.panels.desk import Desk, Event, small_text
 
 LARGEST_DOWNLOAD = 256 * 1024 * 1024  # bytes; the browser gets it through the page's own socket
+DOWNLOAD_RATE = 50e6  # bytes/s, on average and to all clients together: what is not sent yet fills memory
 
 
 class RecordingPanel:
     def __init__(self, desk: Desk) -> None:
         self._desk = desk
         self._recording = ""
+        self._next_download = 0.0
         self._finished = desk.session.last_recording
         with desk.gui.add_folder("Recording", expand_by_default=False):
             self._switch = desk.gui.add_button(
@@ -30,7 +32,7 @@ class RecordingPanel:
                 disabled=self._finished is None,
                 hint="the last finished recording",
             )
-            self._line = desk.gui.add_html(_line("not recording"))
+            self._line = desk.gui.add_html(small_text("not recording"))
         desk.on_press(self._switch, lambda: StopRecording() if self._recording else StartRecording())
         self._download.on_click(self._on_download)
 
@@ -42,21 +44,23 @@ class RecordingPanel:
         if finished is not None and finished != self._finished:
             self._finished = finished
             self._download.disabled = False
-            self._line.content = _line(f"saved {finished.name} ({_size(finished)})")
+            self._line.content = small_text(f"saved {finished.name} ({_size(finished)})")
 
     def _show(self, recording: str) -> None:
         self._switch.label = "Stop recording" if recording else "Record"
         self._switch.icon = viser.Icon.PLAYER_STOP if recording else viser.Icon.PLAYER_RECORD
         self._switch.color = "red" if recording else None
-        self._line.content = _line(f"recording {Path(recording).name}" if recording else "not recording")
+        self._line.content = small_text(f"recording {Path(recording).name}" if recording else "not recording")
 
-    async def _on_download(self, event: Event) -> None:
-        """To the client who asked, and to no other."""
+    def _on_download(self, event: Event) -> None:
+        """To the client who asked, and to no other. On a thread of viser's pool: a large file takes a while to read."""
         path = self._desk.session.last_recording
-        if event.client is None or path is None:
+        if event.client is None or path is None or time.monotonic() < self._next_download:
             return
         try:
-            if path.stat().st_size > LARGEST_DOWNLOAD:
+            size = path.stat().st_size
+            self._next_download = time.monotonic() + 1.0 + size / DOWNLOAD_RATE
+            if size > LARGEST_DOWNLOAD:
                 _tell(event.client, f"{path.name} is too large to send ({_size(path)}); it is in the record directory.")
                 return
             content = path.read_bytes()
@@ -76,7 +80,3 @@ def _size(path: Path) -> str:
         return f"{path.stat().st_size / 1e6:.1f} MB"
     except OSError:
         return "size unknown"
-
-
-def _line(text: str) -> str:
-    return f'<div style="padding:2px 14px 8px;font-size:.82em;opacity:.7">{html.escape(text)}</div>'

@@ -5,8 +5,8 @@ from __future__ import annotations
 import random
 
 import viser
-from sandbox.commands import Bomb, LoadScene, Pause, Play, Reset, SetSpeed, StepOnce
 
+from sandbox.commands import Bomb, LoadScene, Pause, Play, Reset, SetSpeed, StepOnce
 from sandbox.frame import Frame
 from sandbox.scenes import SCENES
 from web.panels.desk import Desk, Event, Follower

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import viser
-from sandbox.commands import Spawn
 
 from engine import SHAPE_KINDS
+from sandbox.commands import Spawn
 from sandbox.frame import Frame
 from web.panels.desk import Desk
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -153,7 +154,7 @@ def test_destroyed_joint_lets_go_and_its_handle_is_stale() -> None:
     run(world, 10)
     assert world.positions[1, 1] == pytest.approx(height - 10 * DT * DT * 55, rel=1e-12)
     for name in ("body1", "body2", "impulse", "anchors", "softness", "bias_factor", "collide_connected"):
-        with pytest.raises(ValueError, match="RevoluteJoint 0.*living"):
+        with pytest.raises(ValueError, match=r"RevoluteJoint 0.*living"):
             getattr(joint, name)
     with pytest.raises(ValueError, match="living"):
         joint.destroy()
@@ -165,7 +166,7 @@ def test_destroyed_joint_lets_go_and_its_handle_is_stale() -> None:
 def test_joints_are_listed_in_the_order_of_creation() -> None:
     world = World()
     bodies = [world.create_body(Box(1, 1), position=(2 * k, 0)) for k in range(5)]
-    joints = [world.create_joint_revolute(a, b, anchor=(0, 0)) for a, b in zip(bodies, bodies[1:], strict=False)]
+    joints = [world.create_joint_revolute(a, b, anchor=(0, 0)) for a, b in pairwise(bodies)]
     joints[1].destroy()
     late = world.create_joint_revolute(bodies[4], bodies[0], anchor=(0, 0))  # in the place of the destroyed one
     assert world.joints == [joints[0], joints[2], joints[3], late]

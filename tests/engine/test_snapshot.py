@@ -1,0 +1,258 @@
+"""Snapshots take a world back bit for bit; the hash sees what physics means and nothing else."""
+
+from __future__ import annotations
+
+import pickle
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from engine import Box, Circle, Settings, Snapshot, World
+from engine.snapshot import MAGIC
+from tests.engine.worlds import DT, PRECISIONS, busy, floor, run, tables_of
+
+# --- there and back ---------------------------------------------------------------------------------------------------
+
+
+def eventful(precision: str) -> World:
+    """A busy world whose rows are not in the order of creation, and which carries impulses."""
+    world = run(busy(precision), 40)
+    world.bodies[2].destroy()
+    world.create_body(Box(0.5, 0.5), position=(0.3, 2.5))
+    run(world, 40)
+    world.bodies[1].apply_force((3, 1), (0.2, 0.7))
+    return world
+
+
+@pytest.mark.parametrize("precision", PRECISIONS)
+def test_restoring_goes_back_bit_for_bit(precision: str) -> None:
+    world = eventful(precision)
+    snapshot, before = world.snapshot(), tables_of(world)
+    run(world, 50)
+    after, later = world.state_hash(), tables_of(world)
+    world.gravity = (5, 5)
+    world.bodies[0].destroy()
+    world.create_body(Circle(1))
+    world.restore(snapshot)
+    assert world.gravity == (0.0, -10.0)
+    assert {k: v for k, v in tables_of(world).items() if "serial" not in k} == {
+        k: v for k, v in before.items() if "serial" not in k
+    }
+    run(world, 50)
+    assert world.state_hash() == after
+    assert all(later[name] == bits for name, bits in tables_of(world).items() if "serial" not in name)
+    assert (world.step_count, world.time) == (130, pytest.approx(130 * DT))
+
+
+@pytest.mark.parametrize("precision", PRECISIONS)
+def test_another_world_takes_it_over(precision: str) -> None:
+    world = eventful(precision)
+    other = run(busy(precision, gravity=(1, 1), iterations=3), 7)
+    other.restore(world.snapshot())
+    assert other.settings == world.settings
+    assert other.state_hash() == world.state_hash()
+    run(world, 50)
+    run(other, 50)
+    assert other.state_hash() == world.state_hash()
+    assert np.array_equal(other.contact_records(), world.contact_records())
+    assert [tuple(body.position) for body in other.bodies] == [tuple(body.position) for body in world.bodies]
+
+
+def test_handles_follow_a_snapshot_from_another_world() -> None:
+    # the same serials stand in other rows there: no handle may point into the wrong one
+    source = World()
+    for k in range(4):
+        source.create_body(Circle(0.1), position=(k, 0))
+    target = World()
+    held = [target.create_body(Circle(0.1), position=(0, k)) for k in range(4)]
+    held[0].destroy()
+    held.append(target.create_body(Circle(0.1), position=(0, 9)))
+    assert held[4]._row == 0
+    target.restore(source.snapshot())
+    assert [tuple(body.position) for body in target.bodies] == [(k, 0.0) for k in range(4)]
+    assert not held[4].alive
+
+
+@pytest.mark.parametrize("precision", PRECISIONS)
+def test_bytes_there_and_back(precision: str) -> None:
+    world = eventful(precision)
+    data = world.snapshot().to_bytes()
+    assert data == world.snapshot().to_bytes(), "equal states give equal bytes"
+    read = Snapshot.from_bytes(data)
+    assert read.to_bytes() == data
+    other = World(precision=precision)
+    other.restore(read)
+    run(world, 50)
+    run(other, 50)
+    assert other.state_hash() == world.state_hash()
+
+
+def test_a_snapshot_is_a_copy() -> None:
+    world = eventful("double")
+    snapshot = world.snapshot()
+    data = snapshot.to_bytes()
+    run(world, 5)
+    assert snapshot.to_bytes() == data
+    world.restore(snapshot)
+    run(world, 5)
+    assert snapshot.to_bytes() == data
+
+
+def test_handles_across_a_restore() -> None:
+    world = run(busy(), 10)
+    body, joint = world.bodies[4], world.joints[0]
+    snapshot = world.snapshot()
+    body.destroy()
+    assert not body.alive
+    assert not joint.alive
+    late = world.create_body(Box(1, 1), position=(7, 7))
+    late_joint = world.create_joint_revolute(late, world.bodies[0], anchor=(7, 8))
+    world.restore(snapshot)
+    assert body.alive
+    assert joint.alive
+    assert body in world.bodies
+    assert joint.body2 == body
+    assert not late.alive
+    assert not late_joint.alive
+    again = world.create_body(Box(1, 1), position=(8, 8))
+    assert again != late
+    assert not late.alive, "a serial is never given twice"
+    assert again.serial > late.serial
+    world.restore(snapshot)
+    world.restore(snapshot)
+    assert world.bodies[4] == body
+
+
+def test_serials_made_since_do_not_change_the_hash() -> None:
+    world = run(busy(), 10)
+    snapshot, before = world.snapshot(), world.state_hash()
+    for _ in range(3):
+        world.create_body(Box(1, 1))
+    world.restore(snapshot)
+    assert world.state_hash() == before
+
+
+@settings(max_examples=60, deadline=None)
+@given(data=st.data())
+def test_damaged_bytes_are_refused(data: st.DataObject) -> None:
+    whole = bytearray(run(busy(), 3).snapshot().to_bytes())
+    kind = data.draw(st.sampled_from(["flip", "cut", "extend"]))
+    place = data.draw(st.integers(0, len(whole) - 1))
+    if kind == "flip":
+        whole[place] ^= 1 << data.draw(st.integers(0, 7))
+    elif kind == "cut":
+        del whole[place:]
+    else:
+        whole += b"\0"
+    with pytest.raises(ValueError, match=r"^snapshot: must be "):
+        Snapshot.from_bytes(bytes(whole))
+
+
+@pytest.mark.parametrize("data", [b"", b"tumble", MAGIC, pickle.dumps(1), None, "text", 5])
+def test_what_is_no_snapshot_is_refused(data: Any) -> None:
+    with pytest.raises(ValueError, match=r"^snapshot: must be (one that tumble wrote|whole)"):
+        Snapshot.from_bytes(data)
+
+
+def test_whole_bytes_of_another_meaning_are_refused() -> None:
+    good = run(busy(), 3).snapshot()
+    bad_settings = Snapshot(Settings(), {})
+    object.__setattr__(bad_settings.settings, "iterations", -5)
+    with pytest.raises(ValueError, match=r"this version of tumble \(iterations = -5"):
+        Snapshot.from_bytes(bad_settings.to_bytes())
+    object.__setattr__(bad_settings, "tables", {"settings2": good.tables["bodies.bodies"]})
+    with pytest.raises(ValueError, match="this version of tumble"):
+        Snapshot.from_bytes(bad_settings.to_bytes())
+
+
+# --- the hash ---------------------------------------------------------------------------------------------------------
+
+
+def hashed(**changes: Any) -> str:
+    """The hash of a small world at rest, with something changed."""
+    world = World(precision="double")
+    floor(world)
+    body = world.create_body(Box(1, 1), position=(0.3, 0.49), angle=0.01, velocity=(1, 2), angular_velocity=3)
+    for name, value in changes.items():
+        setattr(body, name, value)
+    return world.state_hash()
+
+
+def up(value: float) -> float:
+    return float(np.nextafter(value, np.inf))
+
+
+def test_hash_sees_one_ulp_of_the_motion() -> None:
+    variants = [
+        {},
+        {"position": (up(0.3), 0.49)},
+        {"position": (0.3, up(0.49))},
+        {"angle": up(0.01)},
+        {"velocity": (up(1.0), 2)},
+        {"velocity": (1, up(2.0))},
+        {"angular_velocity": up(3.0)},
+    ]
+    assert len({hashed(**changes) for changes in variants}) == len(variants)
+
+
+@pytest.mark.parametrize("precision", PRECISIONS)
+def test_hash_sees_one_ulp_of_every_impulse(precision: str) -> None:
+    world = run(busy(precision), 40)
+    seen = {world.state_hash()}
+    tables = [(world._state.arbiters.contacts[: world._state.arbiters.count], ("normal_impulse", "tangent_impulse")),
+              (world._state.joints.tables["joints"][:1], ("impulse_x", "impulse_y"))]  # fmt: skip
+    for table, names in tables:
+        for name in names:
+            place = (0,) * table.ndim
+            before = table[name][place]
+            table[name][place] = np.nextafter(before, np.inf, dtype=before.dtype)
+            seen.add(world.state_hash())
+            table[name][place] = before
+    assert len(seen) == 5
+
+
+def test_hash_sees_keys_and_counts() -> None:
+    world = run(busy("double"), 40)
+    seen = {world.state_hash()}
+    world._state.arbiters.contacts["feature"][0, 0] += 1
+    seen.add(world.state_hash())
+    world.create_body(Circle(1))
+    seen.add(world.state_hash())
+    world.create_joint_revolute(world.bodies[1], world.bodies[2], anchor=(0, 0))
+    seen.add(world.state_hash())
+    assert len(seen) == 4
+
+
+def test_zeros_of_either_sign_are_equal() -> None:
+    assert hashed(position=(0.0, 0.0), angle=0.0, velocity=(0.0, 0), angular_velocity=0.0) == hashed(
+        position=(-0.0, -0.0), angle=-0.0, velocity=(-0.0, -0.0), angular_velocity=-0.0
+    )
+
+
+@pytest.mark.parametrize("precision", PRECISIONS)
+def test_capacity_and_serials_do_not_matter(precision: str) -> None:
+    grown = World(precision=precision)
+    for _ in range(300):
+        grown.create_body(Box(1, 1))
+    for body in grown.bodies:
+        body.destroy()
+    fresh = World(precision=precision)
+    for world in (grown, fresh):
+        floor(world)
+        for k in range(20):
+            world.create_body(Circle(0.4), position=(0.1 * k, 0.4 + 0.7 * k))
+        world.create_joint_revolute(world.bodies[2], world.bodies[5], anchor=(0, 0))
+        run(world, 60)
+    assert grown.state_hash() == fresh.state_hash()
+    assert len(grown._state.bodies.tables["bodies"]) > len(fresh._state.bodies.tables["bodies"])
+
+
+def test_settings_and_forces_are_not_physics_yet() -> None:
+    assert hashed() == hashed(force=(1, 1)) == hashed(friction=0.9)
+
+
+def test_hash_is_64_hex_digits() -> None:
+    assert len(bytes.fromhex(hashed())) == 32

@@ -1,0 +1,176 @@
+"""Every scene runs; the demos are Box2D Lite's, bit for bit in what they start from."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from engine import Box, World
+from sandbox.scenes import SCENES, UnknownScene, find_scene, scene
+from sandbox.simulation import Simulation
+from tests.engine.trajectories import Reference, load, row
+from tests.sandbox.watching import PRECISIONS
+
+DEMOS = {
+    "The Talk/Single Box": "demo1_single_box",
+    "The Talk/Simple Pendulum": "demo2_simple_pendulum",
+    "The Talk/Varying Friction": "demo3_varying_friction",
+    "The Talk/Randomized Stacking": "demo4_randomized_stacking",
+    "The Talk/Pyramid": "demo5_pyramid",
+    "The Talk/Teeter": "demo6_teeter",
+    "The Talk/Suspension Bridge": "demo7_suspension_bridge",
+    "The Talk/Dominos": "demo8_dominos",
+    "The Talk/Multi-Pendulum": "demo9_multi_pendulum",
+}
+
+
+@pytest.mark.parametrize("precision", PRECISIONS)
+@pytest.mark.parametrize("name", SCENES)
+def test_runs_and_stays_finite(name: str, precision: str) -> None:
+    simulation = Simulation(name, precision=precision)
+    before = row(simulation.world)
+    for _ in range(120):
+        simulation.step()
+    state = row(simulation.world)
+    assert np.isfinite(state).all()
+    assert simulation.world.step_count == 120
+    assert np.abs(state - before).max() > 0.01, "nothing happens"
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_is_described(name: str) -> None:
+    entry = SCENES[name]
+    assert entry.name == name
+    assert entry.summary.endswith(".")
+    assert entry.view[2] > 0.0
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_view_shows_what_moves(name: str) -> None:
+    """The camera sees everything that can move, at a screen of 4:3."""
+    center_x, center_y, height = SCENES[name].view
+    world = SCENES[name].make()
+    for body in world.bodies:
+        if body.kind == "dynamic":
+            assert abs(body.position.y - center_y) <= height / 2, f"{body} is above or below the view"
+            assert abs(body.position.x - center_x) <= height * 4 / 3 / 2, f"{body} is beside the view"
+
+
+def test_all_demos_are_there() -> None:
+    assert list(SCENES)[: len(DEMOS)] == list(DEMOS)
+    assert "The Talk/Circles" in SCENES
+
+
+def test_circles_has_circles_and_boxes_that_roll() -> None:
+    kinds = {type(body.shape).__name__ for body in find_scene("Circles").make().bodies if body.kind == "dynamic"}
+    assert kinds == {"Box", "Circle"}
+
+
+@pytest.mark.parametrize("name", DEMOS)
+def test_start_is_box2d_lites_bit_for_bit(name: str) -> None:
+    start = load(DEMOS[name]).start
+    world = SCENES[name].make(precision="double")
+    found = [
+        {
+            "width": [body.shape.width, body.shape.height],
+            "mass": body.mass if body.kind == "dynamic" else -1,
+            "I": body.inertia if body.kind == "dynamic" else -1,
+            "friction": body.friction,
+            "position": list(body.position),
+            "rotation": body.angle,
+        }
+        for body in world.bodies
+        if isinstance(body.shape, Box)
+    ]
+    still = {"velocity": [0, 0], "angular_velocity": 0}
+    assert [{**body, **still} for body in found] == [{**still, **body} for body in start["bodies"]]
+    assert all(body.velocity == (0, 0) and body.angular_velocity == 0 for body in world.bodies)
+    assert joints_of(world) == [
+        {key: joint[key] for key in ("body1", "body2", "localAnchor1", "localAnchor2", "softness", "biasFactor")}
+        for joint in start["joints"]
+    ]
+    settings = SCENES[name].defaults()
+    assert list(settings.gravity) == start["gravity"]
+    assert settings.iterations == start["iterations"]
+    assert settings.accumulate_impulses
+    assert settings.warm_starting
+    assert settings.position_correction
+
+
+def joints_of(world: World) -> list[dict]:
+    """The joints as the references have them; local anchors from a snapshot, which hides nothing."""
+    table = world.snapshot().tables["joints.joints"]
+    rows = {int(entry["serial"]): entry for entry in table if entry["serial"] >= 0}
+    return [
+        {
+            "body1": joint.body1.serial,
+            "body2": joint.body2.serial,
+            "localAnchor1": [rows[joint.serial]["anchor1_x"], rows[joint.serial]["anchor1_y"]],
+            "localAnchor2": [rows[joint.serial]["anchor2_x"], rows[joint.serial]["anchor2_y"]],
+            "softness": joint.softness,
+            "biasFactor": joint.bias_factor,
+        }
+        for joint in world.joints
+    ]
+
+
+@pytest.mark.parametrize("name", ["The Talk/Varying Friction", "The Talk/Dominos", "The Talk/Suspension Bridge"])
+def test_goes_box2d_lites_way(name: str) -> None:
+    """Through `Simulation`, as everything in the sandbox runs."""
+    reference: Reference = load(DEMOS[name])
+    simulation = Simulation(name, reference.start["dt"], precision="double")
+    for step in range(1, 301):
+        simulation.step()
+        error = np.abs(row(simulation.world)[:, :3] - reference.trajectory[step, :, :3]).max()
+        assert error < 1e-8, f"step {step}: off by {error:.2g}"
+
+
+# --- finding ----------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", ["The Talk/Pyramid", "the talk/pyramid", "Pyramid", "pYRAMID"])
+def test_is_found_by_its_whole_name_or_the_part_after_the_folder(name: str) -> None:
+    assert find_scene(name).name == "The Talk/Pyramid"
+
+
+@pytest.mark.parametrize(
+    ("name", "hint"), [("The Talk/Pyramids", "The Talk/Pyramid"), ("Domino", "The Talk/Dominos")]
+)
+def test_unknown_name_is_answered_with_those_that_come_close(name: str, hint: str) -> None:
+    with pytest.raises(UnknownScene, match=f"did you mean .*'{hint}'"):
+        find_scene(name)
+
+
+@pytest.mark.parametrize("name", ["", "qqqqqqqq", "The Talk/", None, 5, True, ["x"], {}, b"Pyramid", "x" * 100_000])
+def test_unknown_name_gets_one_short_line(name: object) -> None:
+    with pytest.raises(UnknownScene) as refusal:
+        find_scene(name)  # type: ignore[arg-type]
+    assert "\n" not in str(refusal.value)
+    assert len(str(refusal.value)) < 300
+
+
+def test_a_name_is_taken_once() -> None:
+    before = dict(SCENES)
+    with pytest.raises(ValueError, match="not taken yet"):
+        scene("The Talk/Pyramid")(lambda world: None)
+    assert before == SCENES
+
+
+def test_a_new_scene_is_one_function() -> None:
+    try:
+
+        @scene("Test/Moon", view=(0.0, 1.0, 2.0), gravity=(0.0, -1.62), iterations=7)
+        def moon(world: World) -> None:
+            """A box falls slowly.
+
+            More words.
+            """
+            world.create_body(Box(1, 1), position=(0, 1))
+
+        entry = find_scene("moon")
+        assert (entry.summary, entry.view) == ("A box falls slowly.", (0.0, 1.0, 2.0))
+        assert entry.make().settings.iterations == 7
+        assert entry.make(iterations=3).settings.iterations == 3
+        assert entry.make(iterations=3).gravity == (0.0, -1.62)
+    finally:
+        SCENES.pop("Test/Moon", None)

@@ -1,0 +1,437 @@
+"""One loop owns the world: it obeys, keeps time, goes on whatever happens, and shows what it does."""
+
+from __future__ import annotations
+
+import logging
+import threading
+import time
+from typing import Any
+
+import numpy as np
+import pytest
+
+from engine import Box, StepError, World
+from sandbox import clock
+from sandbox import commands as ask
+from sandbox import session as sessions
+from sandbox.frame import Frame
+from sandbox.scenes import SCENES, Scene
+from sandbox.session import Session
+from sandbox.simulation import Simulation
+from sandbox.viewer import NullViewer
+from tests.sandbox.watching import Watcher, running, step_by_step, until, whole_frame
+
+LARGEST = float(np.finfo(np.float32).max)  # that single precision holds: no force may be added to such a velocity
+
+
+class PushTooHard(ask.PhysicsCommand):
+    """A command that no page can send: the next step fails."""
+
+    name = "push_too_hard"
+
+    def to_dict(self) -> dict[str, Any]:
+        return {"command": self.name}
+
+    def apply(self, simulation: Simulation) -> None:
+        body = simulation.world.bodies[-1]
+        body.velocity = (LARGEST, 0.0)
+        body.force = (LARGEST, 0.0)
+
+
+# --- running ----------------------------------------------------------------------------------------------------------
+
+
+def test_steps_in_real_time_and_in_order() -> None:
+    with running() as (_, watcher):
+        watcher.wait_for_step(5)
+        first, began = watcher.frames[-1].step, time.perf_counter()
+        watcher.wait_for_step(first + 60)
+        took = time.perf_counter() - began
+        steps = [frame.step for frame in watcher.frames]
+    assert took > 55 / 60, "faster than real time"
+    assert sorted(steps) == steps
+    assert set(range(steps[-1] + 1)) == set(steps), "a frame is missing"
+
+
+def test_runs_as_a_simulation_does() -> None:
+    """Bit for bit, whatever the thread and the clock do."""
+    with running("The Talk/Dominos", iterations=7) as (_, watcher):
+        frame = watcher.wait_for_step(40)
+    alone = Simulation("The Talk/Dominos", iterations=7)
+    for _ in range(frame.step):
+        alone.step()
+    assert whole_frame(alone.frame()) == whole_frame(frame)
+
+
+def test_the_caller_never_waits() -> None:
+    with running() as (session, watcher):
+        watcher.wait_for_step(1)
+        began = time.perf_counter()
+        for _ in range(1000):
+            session.submit(ask.MoveHand(1, 0.0, 0.0))
+        assert time.perf_counter() - began < 0.5
+
+
+@pytest.mark.parametrize("speed", [0.25, 3.0])
+def test_speed(speed: float) -> None:
+    with running() as (session, watcher):
+        began = time.perf_counter()
+        session.submit(ask.SetSpeed(speed))
+        first = watcher.wait(lambda frame: frame.status.speed == speed).step
+        time.sleep(0.5)
+        last, took = session.frame.step, time.perf_counter() - began
+        assert last - first <= took * 60 * speed + clock.MOST_AT_ONCE + 1
+        watcher.wait(lambda frame: 0.8 < frame.status.steps_per_second / (60 * speed) < 1.1)
+
+
+def test_says_when_it_cannot_keep_real_time(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(clock, "PATIENCE", 0.3)
+    step = Simulation.step
+    slow = threading.Event()
+    slow.set()
+    monkeypatch.setattr(Simulation, "step", lambda self: (step(self), slow.is_set() and time.sleep(0.05)))
+    with running() as (_, watcher):
+        frame = watcher.wait(lambda frame: frame.status.behind)
+        assert 5 < frame.status.steps_per_second < 21
+        slow.clear()
+        watcher.wait(lambda frame: not frame.status.behind)
+
+
+# --- play, pause, step, reset -----------------------------------------------------------------------------------------
+
+
+def test_pause_and_play() -> None:
+    with running() as (session, watcher):
+        watcher.wait_for_step(3)
+        session.submit(ask.Pause())
+        paused = watcher.wait(lambda frame: frame.status.paused)
+        assert paused.status.steps_per_second == 0.0
+        time.sleep(0.15)
+        assert session.frame.step == paused.step
+        session.submit(ask.Play())
+        played = watcher.wait(lambda frame: frame.step > paused.step)
+        assert not played.status.paused
+        assert played.step < paused.step + 10, "the pause was not caught up"
+
+
+def test_single_steps() -> None:
+    with running(paused=True) as (session, watcher):
+        step_by_step(session, watcher, 3)
+        time.sleep(0.1)
+        assert session.frame.step == 3
+        assert session.frame.status.paused
+
+
+def test_a_single_step_pauses() -> None:
+    with running() as (session, watcher):
+        watcher.wait_for_step(2)
+        session.submit(ask.StepOnce())
+        frame = watcher.wait(lambda frame: frame.status.paused)
+        time.sleep(0.1)
+        assert session.frame.step == frame.step
+
+
+def test_commands_are_obeyed_while_it_stands_still() -> None:
+    with running(paused=True) as (session, watcher):
+        session.submit(ask.Spawn("box", 3.0, 5.0))
+        frame = watcher.wait(lambda frame: len(frame.serials) == 3)
+        assert frame.step == 0
+        assert frame.content != watcher.frames[0].content
+        frame = step_by_step(session, watcher, 1)
+        stepped = next(frame for frame in watcher.frames if frame.step == 1)
+        assert [command["command"] for command in stepped.commands] == ["spawn"]
+
+
+def test_a_frame_carries_the_commands_before_its_step_and_no_others() -> None:
+    given = [ask.SetIterations(5), ask.Grab(1, 0.0, 4.0), ask.MoveHand(1, 2.0, 5.0)]
+    with running(paused=True) as (session, watcher):
+        for command in given:
+            session.submit(command)
+            session.submit(ask.SetSpeed(2.0))  # not physics: not recorded
+        step_by_step(session, watcher, 2)
+    first, second = (next(frame for frame in watcher.frames if frame.step == step) for step in (1, 2))
+    assert list(first.commands) == [command.to_dict() for command in given]
+    assert second.commands == ()
+
+
+def test_reset_keeps_the_settings() -> None:
+    with running("The Talk/Pyramid", paused=True, precision="double") as (session, watcher):
+        start = watcher.frames[0]
+        for command in (ask.SetIterations(3), ask.SetGravity(1.0, -5.0), ask.SetSwitch("warm_starting", False)):
+            session.submit(command)
+        session.submit(ask.Bomb(0, 15, 0, 0, -20, 0))
+        before = step_by_step(session, watcher, 5)
+        session.submit(ask.Reset())
+        frame = watcher.wait(lambda frame: frame.step == 0 and frame.settings.iterations == 3)
+        assert frame.settings == before.settings
+        assert frame.settings.precision == "double"
+        assert frame.time == 0.0
+        assert frame.content != before.content
+        assert frame.positions.tobytes() == start.positions.tobytes()
+        assert frame.status.paused, "a reset does not set it going"
+        assert session.scene.name == "The Talk/Pyramid"
+
+
+def test_another_scene_brings_its_own_gravity_and_keeps_the_solvers_settings() -> None:
+    with running("The Talk/Pyramid", paused=True) as (session, watcher):
+        session.submit(ask.SetIterations(3))
+        session.submit(ask.SetGravity(1.0, -5.0))
+        session.submit(ask.Grab(1, -6.0, 0.75))
+        session.submit(ask.LoadScene("The Talk/Dominos"))
+        frame = watcher.wait(lambda frame: frame.scene == "The Talk/Dominos")
+        assert (frame.step, len(frame.joints)) == (0, 4)
+        assert frame.settings.iterations == 3
+        assert frame.settings.gravity == (0.0, -10.0)
+        assert session.scene.name == "The Talk/Dominos"
+        session.submit(ask.MoveHand(1, 0.0, 10.0))
+        frame = step_by_step(session, watcher, 1)
+    alone = Simulation("The Talk/Dominos", iterations=3)
+    alone.step()
+    assert whole_frame(alone.frame()) == whole_frame(frame), "a hand of the scene before still pulls"
+
+
+# --- who watches ------------------------------------------------------------------------------------------------------
+
+
+def test_a_late_viewer_gets_the_latest_frame_at_once() -> None:
+    with running(paused=True) as (session, watcher):
+        step_by_step(session, watcher, 2)
+        late = Watcher()
+        session.add_viewer(late)
+        assert [frame.step for frame in late.frames] == [2]
+
+
+def test_several_watch_and_one_that_went_sees_no_more() -> None:
+    with running(paused=True) as (session, watcher):
+        stays, goes = NullViewer(), Watcher()
+        session.add_viewer(stays)
+        session.add_viewer(goes)
+        session.remove_viewer(goes)
+        session.remove_viewer(goes)
+        step_by_step(session, watcher, 1)
+        until(lambda: stays.last is not None and stays.last.step == 1)
+        assert stays.frame_count >= 2
+        assert [frame.step for frame in goes.frames] == [0]
+
+
+def test_a_failing_viewer_is_dropped_and_the_loop_goes_on(caplog: pytest.LogCaptureFixture) -> None:
+    class Fails(Watcher):
+        def show(self, frame: Frame) -> None:
+            super().show(frame)
+            if frame.step > 0:
+                raise RuntimeError("its window is gone")
+
+    with running(paused=True) as (session, watcher):
+        fails = Fails()
+        session.add_viewer(fails)
+        frame = step_by_step(session, watcher, 3)
+        assert [frame.step for frame in fails.frames if frame.step] == [1]
+        assert frame.status.failure == ""
+    assert "its window is gone" in caplog.text
+
+
+def test_frames_are_read_only() -> None:
+    with running() as (_, watcher):
+        frame = watcher.wait_for_step(3)
+    for value in vars(frame).values():
+        if isinstance(value, np.ndarray):
+            assert not value.flags.writeable
+    with pytest.raises(AttributeError):
+        frame.step = 0
+
+
+def test_frames_of_many_steps_do_not_share_memory() -> None:
+    with running() as (_, watcher):
+        watcher.wait_for_step(20)
+    heights = [float(frame.positions[1, 1]) for frame in watcher.frames if frame.step]
+    assert heights == sorted(heights, reverse=True)
+    assert len(set(heights)) > 15
+
+
+def test_closing_closes_the_viewers_though_one_fails() -> None:
+    class Stuck(NullViewer):
+        def close(self) -> None:
+            raise RuntimeError("will not close")
+
+    session, watcher = Session("The Talk/Single Box"), Watcher()
+    session.add_viewer(Stuck())
+    session.add_viewer(watcher)
+    session.start()
+    session.close()
+    session.close()
+    assert watcher.closed
+    count = len(watcher.frames)
+    time.sleep(0.1)
+    assert len(watcher.frames) == count, "it still runs"
+
+
+def test_closing_before_the_start() -> None:
+    session, watcher = Session("The Talk/Single Box"), Watcher()
+    session.add_viewer(watcher)
+    session.close()
+    assert watcher.closed
+
+
+@pytest.mark.parametrize("paused", [False, True])
+def test_closes_quickly(paused: bool) -> None:
+    with running(paused=paused) as (session, watcher):
+        watcher.wait(lambda frame: frame.status.paused == paused)
+        began = time.perf_counter()
+        session.close()
+        assert time.perf_counter() - began < 1.0
+
+
+# --- what it must bear ------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("rubbish", [None, "spawn", 5, {"command": "spawn"}, object(), ask.Spawn, b"\x00"])
+def test_rubbish_is_ignored_logged_and_told(rubbish: Any, caplog: pytest.LogCaptureFixture) -> None:
+    with running(paused=True) as (session, watcher):
+        session.submit(rubbish)
+        frame = watcher.wait(lambda frame: frame.status.notice)
+        assert "must be one of sandbox.commands" in frame.status.notice
+        after = step_by_step(session, watcher, 1)
+        assert after.status.failure == ""
+    assert any(record.levelno == logging.WARNING and "ignored" in record.message for record in caplog.records)
+    alone = Simulation("The Talk/Single Box")
+    alone.step()
+    assert whole_frame(alone.frame()) == whole_frame(after)
+
+
+def test_a_command_that_cannot_be_done_changes_nothing() -> None:
+    with running(paused=True) as (session, watcher):
+        for _ in range(25):
+            session.submit(ask.Spawn("box", 0.0, 9.0, count=200))
+        frame = watcher.wait(lambda frame: "count = 200" in frame.status.notice)
+        assert len(frame.serials) == 24 * 200 + 2
+        assert frame.status.failure == ""
+
+
+def test_a_full_queue_says_so() -> None:
+    session = Session("The Talk/Single Box")
+    accepted = [session.submit(ask.Release(1)) for _ in range(sessions.MOST_QUEUED + 10)]
+    assert accepted == [True] * sessions.MOST_QUEUED + [False] * 10
+    session.start()
+    try:
+        until(lambda: session.submit(ask.Release(1)))
+        until(lambda: session.frame.step > 10)
+    finally:
+        session.close()
+
+
+def test_a_flood_does_not_stop_the_steps() -> None:
+    """Of the costliest command: taking hold looks at every body."""
+
+    def crowd(world: World) -> None:
+        for i in range(400):
+            world.create_body(Box(0.5, 0.5), position=(i % 40, i // 40), kind="static")
+        world.create_body(Box(1, 1), position=(0.0, 20.0))
+
+    SCENES["Test/Crowd"] = Scene("Test/Crowd", crowd, "", (0.0, 0.0, 10.0))
+    ended = threading.Event()
+    try:
+        with running("Test/Crowd") as (session, watcher):
+
+            def flood() -> None:
+                while not ended.is_set():
+                    if not session.submit(ask.Grab(1, 0.0, 900.0)):
+                        ended.wait(0.01)
+
+            flooder = threading.Thread(target=flood)
+            watcher.wait_for_step(1)
+            flooder.start()
+            try:
+                until(lambda: not session.submit(ask.Grab(1, 0.0, 900.0)))  # the queue is full
+                first = session.frame.step
+                time.sleep(1.0)
+                assert session.frame.step - first > 15
+            finally:
+                ended.set()
+                flooder.join()
+    finally:
+        del SCENES["Test/Crowd"]
+
+
+def test_standing_still_a_flood_does_not_fill_the_memory(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sessions, "MOST_A_STEP", 50)
+    with running(paused=True) as (session, watcher):
+        for _ in range(200):
+            session.submit(ask.MoveHand(1, 1.0, 1.0))
+        watcher.wait(lambda frame: "at most 50" in frame.status.notice)
+        step_by_step(session, watcher, 1)
+        stepped = next(frame for frame in watcher.frames if frame.step == 1)
+        assert len(stepped.commands) == 50
+        session.submit(ask.SetIterations(4))
+        watcher.wait(lambda frame: frame.settings.iterations == 4)
+
+
+# --- steps that fail --------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("steps", [0, 4, 63])
+def test_a_failing_step_keeps_the_last_good_state_pauses_and_says_so(steps: int) -> None:
+    with running("The Talk/Dominos", paused=True) as (session, watcher):
+        session.submit(ask.SetGravity(0.5, -9.0))
+        good = step_by_step(session, watcher, steps)
+        session.submit(ask.Spawn("box", 0.0, 30.0))
+        session.submit(PushTooHard())
+        session.submit(ask.Play())
+        frame = watcher.wait(lambda frame: frame.status.failure)
+        assert f"body {len(good.serials)} is no longer finite" in frame.status.failure
+        assert frame.status.paused
+        if steps:
+            assert whole_frame(frame) == whole_frame(good)
+        time.sleep(0.1)
+        assert session.frame.step == steps
+
+        session.submit(ask.Play())
+        frame = watcher.wait_for_step(steps + 5)
+        assert frame.status.failure == ""
+        assert not frame.status.paused
+        first = next(frame for frame in watcher.frames if frame.step == steps + 1)
+        assert first.commands == (), "what failed is not done again"
+        assert np.isfinite(frame.positions).all()
+
+
+def test_a_failing_single_step_too() -> None:
+    with running(paused=True) as (session, watcher):
+        good = step_by_step(session, watcher, 2)
+        session.submit(PushTooHard())
+        session.submit(ask.StepOnce())
+        frame = watcher.wait(lambda frame: frame.status.failure)
+        assert whole_frame(frame) == whole_frame(good)
+        frame = step_by_step(session, watcher, 1)
+        assert frame.status.failure == ""
+
+
+@pytest.mark.parametrize("error", [StepError("made up"), RuntimeError("made up"), MemoryError("made up")])
+def test_whatever_fails_in_a_step_is_taken_back(error: Exception, monkeypatch: pytest.MonkeyPatch) -> None:
+    step = Simulation.step
+
+    def fails_once_half_way(self: Simulation) -> None:
+        step(self)
+        if self.world.iterations == 9:
+            self.world.iterations = 8
+            raise error
+
+    with running(paused=True) as (session, watcher):
+        step_by_step(session, watcher, 5)
+        monkeypatch.setattr(Simulation, "step", fails_once_half_way)
+        session.submit(ask.SetIterations(9))
+        session.submit(ask.Play())
+        frame = watcher.wait(lambda frame: frame.status.failure)
+        assert "made up" in frame.status.failure
+        assert frame.status.paused
+        session.submit(ask.Reset())
+        frame = watcher.wait(lambda frame: frame.step == 0 and not frame.status.failure)
+        session.submit(ask.Play())
+        watcher.wait_for_step(5)
+
+
+def test_a_reset_ends_a_failure() -> None:
+    with running(paused=True) as (session, watcher):
+        session.submit(PushTooHard())
+        session.submit(ask.StepOnce())
+        watcher.wait(lambda frame: frame.status.failure)
+        session.submit(ask.Reset())
+        watcher.wait(lambda frame: not frame.status.failure)

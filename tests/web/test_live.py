@@ -1,0 +1,58 @@
+"""The page over a real session: what is done in it happens in the world."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+import pytest
+
+from sandbox.session import Session
+from tests.web.fake_session import wait_until
+from tests.web.raw_client import CLICK, DRAG, RawClient, raw_client
+from web import App
+
+
+@pytest.fixture
+def live() -> Iterator[tuple[Session, RawClient]]:
+    session = Session("The Talk/Single Box")
+    app = App(session, port=0)
+    session.start()
+    with raw_client(app.url) as client:
+        yield session, client
+    session.close()
+    app.close()
+
+
+def test_what_clients_do_happens_in_the_world(live: tuple[Session, RawClient]) -> None:
+    session, client = live
+    client.set("count", 3)
+    client.send(CLICK | {"ray_origin": [8.0, 5.0, 200.0], "ray_direction": [0.0, 0.0, -1.0]})
+    wait_until(lambda: len(session.frame.serials) == 5)
+    client.set("iterations", 25)
+    client.set("warm starting", False)
+    wait_until(lambda: session.frame.settings.iterations == 25 and not session.frame.settings.warm_starting)
+    client.set("scene", "The Talk/Dominos")
+    wait_until(lambda: session.frame.scene == "The Talk/Dominos")
+    client.send({"type": "CommandTriggerMessage", "uuid": client.control("Pause or play")})
+    wait_until(lambda: session.frame.status.paused)
+    before = session.frame.step
+    client.send({"type": "CommandTriggerMessage", "uuid": client.control("Single step")})
+    wait_until(lambda: session.frame.step == before + 1)
+
+
+def test_a_drag_pulls_a_body_softly(live: tuple[Session, RawClient]) -> None:
+    session, client = live
+    wait_until(lambda: len(session.frame.contacts) == 2, 8.0)  # the box has landed
+    x, y = session.frame.positions[1].tolist()
+    client.send(DRAG | {"start_position": [x, y, 0.0], "end_position": [x + 4.0, y + 4.0, 0.0]})
+    speeds: list[float] = []
+
+    def is_there() -> bool:
+        speeds.append(float(np.abs(session.frame.velocities[1]).max()))
+        return bool(session.frame.positions[1][0] > x + 3.0)
+
+    wait_until(is_there)
+    assert 1.0 < max(speeds) < 60.0  # on its way there, not there at once
+    client.send(DRAG | {"phase": "end", "end_position": [x + 4.0, y + 4.0, 0.0]})
+    wait_until(lambda: session.frame.positions[1][1] < y + 0.1)  # let go, it falls
