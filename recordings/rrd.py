@@ -58,12 +58,6 @@ def read_chunks(path: Path, application: str, under: str = "/") -> Iterator[Chun
             raise RecordingError(f"{path}: damaged: its messages do not lead to its end")
 
 
-def is_complete(path: Path) -> bool:
-    """Whether the file's messages lead to a footer, as they do unless writing was cut short."""
-    with path.open("rb") as file:
-        return any(kind == _END for kind, _ in _messages(file))
-
-
 def _messages(file: BinaryIO) -> Iterator[tuple[int, int]]:
     """Kind and size of every whole message; each time, the file stands at the payload."""
     end = os.fstat(file.fileno()).st_size

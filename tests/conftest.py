@@ -63,5 +63,5 @@ def pytest_sessionfinish(session: pytest.Session) -> None:
 def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter, config: pytest.Config) -> None:
     if count := _skipped(config):
         terminalreporter.write_line(
-            f"TUMBLE_NO_SKIP=1: {count} skipped, so this run fails. The reasons above say what is missing.", red=True
+            f"TUMBLE_NO_SKIP=1: {count} skipped, so this run fails. The reasons below say what is missing.", red=True
         )

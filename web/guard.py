@@ -30,6 +30,8 @@ BURST = 400.0  # messages at once, as when a tab comes back from sleep
 MOST_CLIENTS = 32
 PATIENCE = 5.0  # s of flood without a pause, after which its sender has to go
 LOG_LINES_PER_CLIENT = 20  # then silence, so that a hostile client cannot fill a disk
+LOG_LINES_PER_SECOND = 2.0  # of all clients together, after a burst; one may connect again and again
+LOG_BURST = 200.0
 
 log = logging.getLogger("tumble.web")
 
@@ -46,6 +48,11 @@ class Guard:
         self._server: viser.ViserServer | None = None
         self._opened = asyncio.Event()
         self._clients = 0
+        self._log_allowance = Allowance(LOG_LINES_PER_SECOND, LOG_BURST)
+
+    def report(self, line: str, *values: object) -> None:
+        if self._log_allowance.spend():
+            log.warning(line, *values)
 
     def open(self, server: viser.ViserServer) -> None:
         self._server = server
@@ -57,7 +64,7 @@ class Guard:
         def screen(connection: ServerConnection, request: Request) -> Response | None:
             problem = self._problem_with(request.headers)
             if problem:
-                log.warning("refused a request: %s", problem)
+                self.report("refused a request: %s", problem)
                 return Response(HTTPStatus.FORBIDDEN, "Forbidden", Headers(), b"refused: " + problem.encode())
             response = serve_file(connection, request) if serve_file else None
             if response is not None:
@@ -71,14 +78,14 @@ class Guard:
 
         async def handle(connection: ServerConnection) -> None:
             if self._clients >= MOST_CLIENTS:
-                log.warning("refused a client: %d are connected already", self._clients)
+                self.report("refused a client: %d are connected already", self._clients)
                 await connection.close(1013, "too many clients")
                 return
             self._clients += 1
             try:
                 await self._opened.wait()
                 assert self._server is not None
-                await handler(FilteredConnection(connection, self._server))
+                await handler(FilteredConnection(connection, self._server, self.report))
             finally:
                 self._clients -= 1
 
@@ -114,9 +121,10 @@ class Guard:
 class FilteredConnection:
     """A websocket as viser uses it, of which `recv` returns only what is allowed, and not faster than allowed."""
 
-    def __init__(self, connection: ServerConnection, server: viser.ViserServer) -> None:
+    def __init__(self, connection: ServerConnection, server: viser.ViserServer, report: Callable[..., None]) -> None:
         self._connection = connection
         self._server = server
+        self._log = report
         self._allowance = Allowance()
         self._flooded_since: float | None = None
         self._lines_left = LOG_LINES_PER_CLIENT
@@ -159,7 +167,7 @@ class FilteredConnection:
         if self._lines_left > 0:
             self._lines_left -= 1
             address = self._connection.remote_address
-            log.warning("client %s %s%s", address and address[:2], line, "" if self._lines_left else " (last report)")
+            self._log("client %s %s%s", address and address[:2], line, "" if self._lines_left else " (last report)")
 
 
 class Allowance:
@@ -173,10 +181,22 @@ class Allowance:
 
     def take(self) -> float:
         """Spend one message; returns how long to wait for it [s]."""
-        now = time.monotonic()
-        self._left = min(self._burst, self._left + (now - self._time) * self._per_second) - 1.0
-        self._time = now
+        self._refill()
+        self._left -= 1.0
         return max(0.0, -self._left / self._per_second)
+
+    def spend(self) -> bool:
+        """Spend one message if there is one left; there is no waiting for it."""
+        self._refill()
+        if self._left < 1.0:
+            return False
+        self._left -= 1.0
+        return True
+
+    def _refill(self) -> None:
+        now = time.monotonic()
+        self._left = min(self._burst, self._left + (now - self._time) * self._per_second)
+        self._time = now
 
 
 def _harden(headers: Headers) -> None:

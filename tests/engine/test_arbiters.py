@@ -9,8 +9,10 @@ from hypothesis import strategies as st
 
 from engine import Box, Circle, World
 from engine.arbiters import match_arbiters
-from engine.tables import arbiter_dtype, contact_dtype, empty
+from engine.tables import arbiter_dtype, contact_dtype, empty, step_dtype
 from tests.engine.worlds import DT, busy, floor, run
+
+pytestmark = pytest.mark.kernel
 
 pair = st.tuples(st.integers(0, 5), st.integers(6, 9))
 contacts = st.lists(st.integers(1, 4), max_size=2, unique=True)
@@ -34,7 +36,6 @@ def fill(content: dict, first_impulse: float) -> tuple[np.ndarray, np.ndarray, i
     return arbiters, points, len(content)
 
 
-@pytest.mark.kernel
 @settings(max_examples=200, deadline=None)
 @given(before=tables, after=tables, warm_starting=st.booleans())
 def test_impulses_are_carried_by_pair_and_feature(before: dict, after: dict, warm_starting: bool) -> None:
@@ -49,7 +50,9 @@ def test_impulses_are_carried_by_pair_and_feature(before: dict, after: dict, war
         for index in range(old_count)
         for i in range(old["count"][index])
     }
-    kept = match_arbiters(old, old_points, old_count, new, points, total, warm_starting)
+    steps = empty(1, step_dtype("double"))
+    steps["warm_starting"] = warm_starting
+    kept = match_arbiters(old, old_points, old_count, new, points, total, steps)
     expected = sorted((key, features) for key, features in after.items() if features)
     assert kept == len(expected)
     for index, (key, features) in enumerate(expected):

@@ -10,6 +10,8 @@ import pytest
 from engine import Box, Circle, Vec2, World
 from tests.engine.worlds import DT, PRECISIONS
 
+pytestmark = pytest.mark.kernel
+
 
 def a_body(precision: str = "double") -> tuple[World, object]:
     world = World(gravity=(0, 0), precision=precision)

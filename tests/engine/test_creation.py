@@ -13,6 +13,8 @@ from engine import Box, Circle, World
 from engine.creation import mass_properties
 from tests.engine.worlds import PRECISIONS
 
+pytestmark = pytest.mark.kernel
+
 
 @pytest.mark.parametrize("precision", PRECISIONS)
 @pytest.mark.parametrize("shape", [Box(2, 0.5), Circle(3)])

@@ -9,6 +9,8 @@ import pytest
 from engine import Box, Circle, World
 from tests.engine.worlds import DT, PRECISIONS, busy, floor, run
 
+pytestmark = pytest.mark.kernel
+
 
 @pytest.mark.parametrize("precision", PRECISIONS)
 def test_sums_over_bodies(precision: str) -> None:

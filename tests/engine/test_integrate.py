@@ -11,6 +11,8 @@ from engine import Box, Circle, World
 from engine.trigonometry import cos_sin
 from tests.engine.worlds import DT, PRECISIONS, run
 
+pytestmark = pytest.mark.kernel
+
 
 @pytest.mark.parametrize("dt", [1 / 60, 1 / 240, 0.1])
 def test_free_fall_lags_by_g_dt_t_over_two(dt: float) -> None:
@@ -75,9 +77,10 @@ def test_force_and_torque_act_for_one_step() -> None:
 def test_static_bodies_stay() -> None:
     world = World()
     body = world.create_body(Box(1, 1), position=(1, 2), angle=3, kind="static")
-    body.apply_force((100, 100))
+    body.apply_force((100, 100), (0, 0))
     run(world, 10)
     assert (tuple(body.position), body.angle, tuple(body.velocity)) == ((1, 2), 3, (0, 0))
+    assert (body.force, body.torque) == ((0, 0), 0)
 
 
 def test_gravity_is_a_vector_and_may_change() -> None:
@@ -87,6 +90,17 @@ def test_gravity_is_a_vector_and_may_change() -> None:
     world.gravity = (0, 6)
     world.step(DT)
     assert tuple(body.velocity) == pytest.approx((3 * DT, 6 * DT), rel=1e-15)
+
+
+def test_every_step_may_have_its_own_length() -> None:
+    world = World(precision="double")
+    body = world.create_body(Circle(1))
+    v = y = 0.0
+    for dt in (0.1, 0.1, 0.02, 0.0, 0.1, 0.3, 0.3):
+        world.step(dt)
+        v -= 10 * dt
+        y += v * dt
+        assert (body.velocity.y, body.position.y) == pytest.approx((v, y), rel=1e-14)
 
 
 def test_mass_does_not_change_how_it_falls() -> None:

@@ -10,6 +10,8 @@ import pytest
 from engine import CONTACT_RECORD, JOINT_RECORD, Box, World
 from tests.engine.worlds import DT, PRECISIONS, busy, run
 
+pytestmark = pytest.mark.kernel
+
 
 @pytest.mark.parametrize("precision", PRECISIONS)
 def test_arbiters_and_contact_records_agree(precision: str) -> None:

@@ -10,6 +10,8 @@ import pytest
 from engine import STAGES, Box, Circle, StepError, World
 from tests.engine.worlds import DT, PRECISIONS, busy, floor, run
 
+pytestmark = pytest.mark.kernel
+
 
 def test_the_talks_order() -> None:
     names = [name for name, _ in STAGES]

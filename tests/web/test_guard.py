@@ -21,6 +21,13 @@ from web.guard import LARGEST_MESSAGE, LOG_LINES_PER_CLIENT, Allowance
 
 Served = tuple[FakeSession, App]
 
+
+@pytest.fixture(autouse=True)
+def _fresh_log(served: Served) -> None:
+    """The log has a limit of its own, which the tests together would reach."""
+    served[1]._page._guard._log_allowance = Allowance(1.0, 100.0)
+
+
 BAD_VALUES = [
     ("gravity y", math.nan),
     ("gravity y", math.inf),
@@ -178,6 +185,8 @@ def test_the_allowance_is_a_burst_and_then_a_rate() -> None:
     waits = [allowance.take() for _ in range(15)]
     assert waits[:5] == [0.0] * 5
     assert waits[-1] == pytest.approx(0.1, abs=0.03)
+    assert not allowance.spend()
+    assert Allowance(per_second=1.0, burst=1.0).spend()
 
 
 @pytest.mark.parametrize(

@@ -45,14 +45,15 @@ def test_a_drag_pulls_a_body_softly(live: tuple[Session, RawClient]) -> None:
     session, client = live
     wait_until(lambda: len(session.frame.contacts) == 2, 8.0)  # the box has landed
     x, y = session.frame.positions[1].tolist()
-    client.send(DRAG | {"start_position": [x, y, 0.0], "end_position": [x + 4.0, y + 4.0, 0.0]})
+    target = (x + 2.0, y + 2.0)
+    client.send(DRAG | {"start_position": [x, y, 0.0], "end_position": [*target, 0.0]})
     speeds: list[float] = []
 
-    def is_there() -> bool:
+    def hangs_there() -> bool:
         speeds.append(float(np.abs(session.frame.velocities[1]).max()))
-        return bool(session.frame.positions[1][0] > x + 3.0)
+        return speeds[-1] < 0.1 and np.allclose(session.frame.positions[1], target, atol=0.5)
 
-    wait_until(is_there)
+    wait_until(hangs_there)
     assert 1.0 < max(speeds) < 60.0  # on its way there, not there at once
-    client.send(DRAG | {"phase": "end", "end_position": [x + 4.0, y + 4.0, 0.0]})
-    wait_until(lambda: session.frame.positions[1][1] < y + 0.1)  # let go, it falls
+    client.send(DRAG | {"phase": "end", "end_position": [*target, 0.0]})
+    wait_until(lambda: session.frame.positions[1][1] < y + 0.3)  # let go, it falls

@@ -24,7 +24,10 @@ class RecordingPanel:
         self._finished = desk.session.last_recording
         with desk.gui.add_folder("Recording", expand_by_default=False):
             self._switch = desk.gui.add_button(
-                "Record", icon=viser.Icon.PLAYER_RECORD, hint="write what happens into a file"
+                "Record",
+                icon=viser.Icon.PLAYER_RECORD,
+                disabled=not desk.session.can_record,
+                hint="write what happens into a file",
             )
             self._download = desk.gui.add_button(
                 "Download",

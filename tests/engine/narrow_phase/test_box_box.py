@@ -14,6 +14,8 @@ from engine.constants import FACE_ABSOLUTE_TOLERANCE, FACE_RELATIVE_TOLERANCE
 from tests.engine.worlds import touching
 from tests.naive.boxes import PlacedBox, contacts_on_face, overlaps
 
+pytestmark = pytest.mark.kernel
+
 TIE = 1e-9  # [m]: closer than this to touching, or to a corner, rounding decides
 
 sizes = st.floats(0.2, 3.0)

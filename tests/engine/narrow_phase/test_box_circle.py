@@ -14,6 +14,8 @@ from tests.engine.worlds import PRECISIONS, run, touching
 from tests.naive.boxes import PlacedBox
 from tests.naive.circles import box_circle
 
+pytestmark = pytest.mark.kernel
+
 sizes = st.floats(0.2, 3.0)
 boxes = st.builds(PlacedBox, st.floats(-1, 1), st.floats(-1, 1), st.floats(-4, 4), sizes, sizes)
 

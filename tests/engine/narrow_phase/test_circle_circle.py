@@ -12,6 +12,8 @@ from hypothesis import strategies as st
 from engine import Circle
 from tests.engine.worlds import PRECISIONS, run, touching
 
+pytestmark = pytest.mark.kernel
+
 
 @settings(max_examples=300, deadline=None)
 @given(

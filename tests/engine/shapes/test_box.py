@@ -13,6 +13,8 @@ from engine import Box, World
 from tests.engine.worlds import PRECISIONS
 from tests.naive.boxes import PlacedBox, overlaps
 
+pytestmark = pytest.mark.kernel
+
 
 def bounds_of(world: World) -> np.ndarray:
     """(N, 4) lower x and y, upper x and y of every body, as the broad phase gets them."""
@@ -40,6 +42,12 @@ def test_is_immutable_and_comparable() -> None:
 
 def test_extents_there_and_back() -> None:
     assert Box.from_half_extents(*Box(0.3, 7.1).half_extents) == Box(0.3, 7.1)
+
+
+def test_what_the_outside_is_told() -> None:
+    box = Box(0.3, 7.1)
+    assert box.extent == Box.sizes(*box.half_extents) == (0.3, 7.1)
+    assert Box.filling(0.3, 7.1) == box
 
 
 def test_contains() -> None:

@@ -12,6 +12,8 @@ from hypothesis import strategies as st
 from engine import Circle, World
 from tests.engine.worlds import PRECISIONS
 
+pytestmark = pytest.mark.kernel
+
 
 def test_area_and_inertia() -> None:
     circle = Circle(2)
@@ -24,6 +26,13 @@ def test_area_and_inertia() -> None:
 
 def test_extents_there_and_back() -> None:
     assert Circle.from_half_extents(*Circle(0.7).half_extents) == Circle(0.7)
+
+
+def test_what_the_outside_is_told() -> None:
+    circle = Circle(0.7)
+    assert circle.extent == (1.4, 1.4)
+    assert Circle.sizes(*circle.half_extents) == (0.7, 0.0)
+    assert Circle.filling(1.4, 99) == circle
 
 
 def test_contains() -> None:

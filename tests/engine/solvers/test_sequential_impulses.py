@@ -13,6 +13,8 @@ from engine.tables import empty, motion_dtype
 from engine.vec2 import Vec2
 from tests.engine.worlds import DT, PRECISIONS, busy, floor, run
 
+pytestmark = pytest.mark.kernel
+
 MASS = 3.0
 WIDTHS = (1e-6, 0.1, 0.5, 1.0, 2.0, 7.0, 1e6)
 
@@ -30,7 +32,6 @@ def motions(*bodies: tuple[float, float], precision: str = "double") -> np.ndarr
     return rows
 
 
-@pytest.mark.kernel
 @pytest.mark.parametrize("a", WIDTHS)
 def test_effective_mass_of_a_corner(a: float) -> None:
     rows = motions((math.inf, math.inf), (MASS, Box(a, 1).inertia(MASS)))
@@ -38,7 +39,6 @@ def test_effective_mass_of_a_corner(a: float) -> None:
     assert m == pytest.approx(talk(a, MASS), rel=1e-12)
 
 
-@pytest.mark.kernel
 def test_effective_mass_of_the_talks_special_cases() -> None:
     assert talk(1.0, 1.0) == 2 / 5
     rows = motions((math.inf, math.inf), (MASS, 0.7), (MASS, 0.7))
@@ -52,7 +52,6 @@ def test_effective_mass_of_the_talks_special_cases() -> None:
         assert m == pytest.approx(limit, rel=1e-12)
 
 
-@pytest.mark.kernel
 def test_effective_mass_in_single() -> None:
     rows = motions((math.inf, math.inf), (1.0, Box(1, 1).inertia(1.0)), precision="single")
     r, up = Vec2(np.float32(0.5), np.float32(-0.5)), Vec2(np.float32(0.0), np.float32(1.0))
@@ -158,11 +157,11 @@ def test_overlap_within_the_slop_is_left_alone() -> None:
 
 def test_warm_starting_begins_with_the_impulses_of_the_step_before() -> None:
     # a settled box: one pass suffices if it starts from the answer, and falls short otherwise
-    settled = World(precision="double", iterations=100)
+    settled = World(precision="double", iterations=40)
     floor(settled)
     for k in range(4):
         settled.create_body(Box(1, 1), position=(0, 0.495 + 0.99 * k))
-    run(settled, 100)
+    run(settled, 60)
     assert len(settled.contact_records()) == 8
     left_over = {}
     for warm in (True, False):
