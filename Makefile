@@ -8,10 +8,10 @@ PYTHON ?=
 ARGS ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help run test check bench lock clean
+.PHONY: help run test check bench pictures lock clean
 
 help: ## list the targets
-	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-6s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
+	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-8s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
 
 run: $(STAMP) ## open the sandbox: make run ARGS="--port 9000 --no-open"
 	$(VENV)/bin/tumble run $(ARGS)
@@ -27,6 +27,9 @@ check: $(STAMP) ## what CI runs: lint, format, types, and the tests with none sk
 
 bench: $(STAMP) ## time the engine: make bench ARGS="..."
 	$(VENV)/bin/tumble bench $(ARGS)
+
+pictures: $(STAMP) ## make the pictures of the documents again
+	$(VENV)/bin/python -m tests.pictures
 
 # Kernels are compiled again after this, and each stale copy of them is gone.
 clean: ## remove compiled kernels and caches (not .venv)

@@ -66,5 +66,5 @@ class Clock:
         return max(0.0, (self.dt - owed) / self.speed)
 
     def _trim(self, now: float) -> None:
-        while self._stamps and self._stamps[0] < now - WINDOW:
+        while self._stamps and self._stamps[0] <= now - WINDOW:
             self._stamps.popleft()

@@ -26,7 +26,7 @@ from sandbox.simulation import Simulation
 from sandbox.verbs import VERBS, replay
 from sandbox.verbs import run as run_verb
 from sandbox.verbs.run import open_recorder
-from tests.sandbox.watching import make_unwritable
+from tests.sandbox.watching import LARGEST, make_unwritable
 
 Result = tuple[int, str, str]
 Tumble = Callable[..., Result]
@@ -225,8 +225,8 @@ def test_a_failing_step_leaves_a_readable_part(
 
     def failing(self: Simulation) -> None:
         if self.world.step_count == 12:
-            self.world.bodies[-1].velocity = (3.4e38, 0.0)
-            self.world.bodies[-1].force = (3.4e38, 0.0)
+            self.world.bodies[-1].velocity = (LARGEST, 0.0)
+            self.world.bodies[-1].force = (LARGEST, 0.0)
         step(self)
 
     monkeypatch.setattr(Simulation, "step", failing)
@@ -308,16 +308,20 @@ def bad_files(tmp_path: Path, recorded: Path) -> dict[str, Path]:
     files["empty"].write_bytes(b"")
     files["foreign"].write_bytes(b"GIF89a" * 1000)
     files["cut at once"].write_bytes(whole[:100])
-    middle = len(whole) // 2
-    files["corrupt"].write_bytes(whole[:middle] + bytes(byte ^ 0xFF for byte in whole[middle : middle + 64]) +
-                                 whole[middle + 64 :])  # fmt: skip
+    corrupt = bytearray(whole)
+    for place in range(1000, len(corrupt), 997):
+        corrupt[place] ^= 0x10
+    files["corrupt"].write_bytes(corrupt)
     files["folder"] = tmp_path
     return files
 
 
 @pytest.mark.parametrize("verb", ["verify", "replay"])
 @pytest.mark.parametrize("kind", ["missing", "empty", "foreign", "cut at once", "corrupt", "folder"])
-def test_bad_file_gets_one_line(tumble: Tumble, bad_files: dict[str, Path], verb: str, kind: str) -> None:
+def test_bad_file_gets_one_line(
+    tumble: Tumble, bad_files: dict[str, Path], verb: str, kind: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(replay, "stop_requested", _stopped_at_once)  # should it serve after all
     options = ["--no-open", "--port", "0"] if verb == "replay" else ["--json", "-"]
     assert str(bad_files[kind]) in one_line(tumble(verb, bad_files[kind], *options))
 
@@ -465,8 +469,12 @@ def test_replayed_frames_are_the_recorded_ones(tmp_path: Path) -> None:
 
     simulation = Simulation("The Talk/Circles")
     file = PartFile(tmp_path / "x.rrd", open_recorder, simulation)
-    expected, given = [], {2: [ask.SetGravity(1.0, -4.0), ask.SetIterations(4)], 5: [ask.Spawn("box", 0.0, 15.0)],
-                           6: [ask.SetSwitch("warm_starting", False), ask.SetSolver("sequential_impulses")]}  # fmt: skip
+    expected = []
+    given = {
+        2: [ask.SetGravity(1.0, -4.0), ask.SetIterations(4)],
+        5: [ask.Spawn("box", 0.0, 15.0)],
+        6: [ask.SetSwitch("warm_starting", False), ask.SetSolver("sequential_impulses")],
+    }
     for step in range(1, 9):
         for command in given.get(step, []):
             simulation.apply(command)

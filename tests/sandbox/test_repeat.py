@@ -114,7 +114,7 @@ def recorded_by_hand(path: Path, simulation: Simulation, commands: dict[int, lis
 
 COMMANDS = {
     3: [ask.MoveHand(1, 4.0, 8.0)],
-    8: [ask.Spawn("circle", 1.0, 14.0, 0.6, count=4), ask.Grab(2, 1.0, 14.0)],
+    8: [ask.Spawn("circle", 1.0, 14.0, 0.6, count=4), ask.Grab(2, 0.67, 14.0)],
     12: [ask.SetGravity(2.0, -8.0)],
     20: [ask.Bomb(-4.0, 15.0, 0.1, 6.0, -22.0, 9.0)],
     30: [ask.Release(1), ask.SetSwitch("warm_starting", False)],
@@ -213,9 +213,9 @@ def test_one_last_bit_that_no_frame_shows_is_found_a_step_later(recording: Recor
     assert difference.body is not None
 
 
-def test_one_last_bit_of_a_hand_is_found(recording: Recording) -> None:
+def test_a_hand_a_little_off_is_found(recording: Recording) -> None:
     hand = recording.hands["hands"]["1"]
-    moved = {**recording.hands, "hands": {"1": {**hand, "x": float(np.nextafter(hand["x"], 9.0))}}}
+    moved = {**recording.hands, "hands": {"1": {**hand, "x": hand["x"] + 1e-5}}}
     difference = verify(replace(recording, hands=moved))
     assert difference is not None
     assert (difference.step, difference.body) == (31, hand["serial"])
@@ -241,10 +241,11 @@ def test_a_command_a_step_too_late_is_found(recording: Recording) -> None:
     assert difference.step == step
 
 
-def test_another_time_step_is_found(recording: Recording) -> None:
+def test_the_last_bit_of_the_time_step_is_found(tmp_path: Path) -> None:
+    recording = recorded_by_hand(tmp_path / "x.rrd", Simulation("The Talk/Dominos", precision="double"), {}, 5)
     difference = verify(replace(recording, dt=float(np.nextafter(recording.dt, 1.0))))
     assert difference is not None
-    assert difference.step == 31
+    assert (difference.step, difference.body) == (1, 2)
 
 
 @pytest.mark.parametrize(

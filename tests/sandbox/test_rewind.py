@@ -4,16 +4,14 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
 import pytest
 
 from engine import StepError
 from sandbox import commands as ask
 from sandbox.rewind import EVERY, History
 from sandbox.simulation import Simulation
-from tests.sandbox.watching import LivelyHands
+from tests.sandbox.watching import LARGEST, LivelyHands
 
-LARGEST = float(np.finfo(np.float32).max)  # that single precision holds: no force may be added to such a velocity
 SNAPSHOTS = (0, 1, 7, EVERY - 1, EVERY, EVERY + 1, 2 * EVERY + 5)
 
 

@@ -19,9 +19,7 @@ from sandbox.scenes import SCENES, Scene
 from sandbox.session import Session
 from sandbox.simulation import Simulation
 from sandbox.viewer import NullViewer
-from tests.sandbox.watching import Watcher, running, step_by_step, until, whole_frame
-
-LARGEST = float(np.finfo(np.float32).max)  # that single precision holds: no force may be added to such a velocity
+from tests.sandbox.watching import LARGEST, Watcher, running, step_by_step, until, whole_frame
 
 
 class PushTooHard(ask.PhysicsCommand):

@@ -18,6 +18,7 @@ from sandbox.session import Session
 from sandbox.simulation import Simulation
 
 PRECISIONS = ("single", "double")
+LARGEST = float(np.finfo(np.float32).max)  # no force may be added to such a velocity in single precision
 PATIENCE = 20.0  # for what must come, on however busy a machine [s]
 
 
