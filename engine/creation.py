@@ -33,10 +33,11 @@ def mass_properties(
     if kind == "static":
         return math.inf, math.inf, 0.0, 0.0
     inertia = shape.inertia(mass)
-    tiny, huge = float(np.finfo(REALS[precision]).tiny), float(np.finfo(REALS[precision]).max)
+    # a joint multiplies two inverse masses: their product, too, must be a normal number
+    low = math.sqrt(float(np.finfo(REALS[precision]).tiny))
     for name, value in (("mass", mass), ("inertia", inertia)):
-        if not (tiny < value < huge and tiny < 1.0 / value < huge):
-            raise validate.refuse(name, value, f"such that it and its inverse are normal {precision} precision numbers")
+        if not low < value < 1.0 / low:
+            raise validate.refuse(name, value, f"from {low:.2g} to {1.0 / low:.2g} in {precision} precision")
     return mass, inertia, 1.0 / mass, 1.0 / inertia
 
 

@@ -123,6 +123,24 @@ def test_bias_factor_is_what_a_step_removes() -> None:
     assert tuple(bob.position) == pytest.approx((1, -2), abs=1e-12)
 
 
+def test_warm_starting_begins_with_the_impulses_of_the_step_before() -> None:
+    settled = World(precision="double", iterations=60)
+    bodies = [settled.create_body(Box(0.1, 0.1), kind="static")]
+    for k in range(5):
+        bodies.append(settled.create_body(Box(0.2, 0.8), position=(0, -0.5 - k)))
+        settled.create_joint_revolute(bodies[k], bodies[k + 1], anchor=(0, -k), collide_connected=False)
+    run(settled, 60)
+    speeds = {}
+    for warm in (True, False):
+        world = World(precision="double")
+        world.restore(settled.snapshot())
+        world.set(iterations=1, warm_starting=warm)
+        world.step(DT)
+        speeds[warm] = np.abs(world.velocities).max()
+    assert speeds[True] < 1e-4
+    assert speeds[False] > 0.01
+
+
 def test_default_bias_factor_is_box2d_lites() -> None:
     assert pendulum("double", 0.3)[1].bias_factor == float(np.float32(0.2))
 
