@@ -38,7 +38,7 @@ class History:
                 simulation.apply(command)
             try:
                 simulation.step()
-            except Exception:  # cannot be: these steps were good before; better an older state than none
+            except Exception:  # noqa: BLE001 - cannot be: these were good before; an older state is better than none
                 simulation.restore(self._snapshot, self._extras)
                 break
         self._keep()

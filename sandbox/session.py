@@ -118,6 +118,7 @@ class Session:
                 viewer.close()
             except Exception as error:
                 log.error("a viewer failed to close: %s", error)
+                log.debug("in the viewer", exc_info=True)
 
     # --- the loop -----------------------------------------------------------------------------------------------
 
@@ -179,7 +180,7 @@ class Session:
         self._applied.clear()
         try:
             self._recorder.show(frame)
-        except Exception as error:
+        except Exception as error:  # noqa: BLE001 - of the disk, or of whatever writes the file
             self._tell(f"the recording ended: {error}")
         self._publish(frame)
 
@@ -287,7 +288,7 @@ class Session:
     def _stop_recording(self) -> None:
         try:
             finished = self._recorder.stop()
-        except Exception as error:
+        except Exception as error:  # noqa: BLE001 - of the disk, or of whatever writes the file
             self._tell(f"the recording ended: {error}")
         else:
             if finished is not None:

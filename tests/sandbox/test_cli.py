@@ -218,9 +218,7 @@ def test_an_interrupted_record_leaves_a_readable_part(
     assert tumble("verify", tmp_path / "x.rrd.part")[:2] == (0, "30 steps identical\n")
 
 
-def test_a_failing_step_leaves_a_readable_part(
-    tumble: Tumble, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_failing_step_leaves_a_readable_part(tumble: Tumble, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     step = Simulation.step
 
     def failing(self: Simulation) -> None:

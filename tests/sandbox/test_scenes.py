@@ -133,9 +133,7 @@ def test_is_found_by_its_whole_name_or_the_part_after_the_folder(name: str) -> N
     assert find_scene(name).name == "The Talk/Pyramid"
 
 
-@pytest.mark.parametrize(
-    ("name", "hint"), [("The Talk/Pyramids", "The Talk/Pyramid"), ("Domino", "The Talk/Dominos")]
-)
+@pytest.mark.parametrize(("name", "hint"), [("The Talk/Pyramids", "The Talk/Pyramid"), ("Domino", "The Talk/Dominos")])
 def test_unknown_name_is_answered_with_those_that_come_close(name: str, hint: str) -> None:
     with pytest.raises(UnknownScene, match=f"did you mean .*'{hint}'"):
         find_scene(name)

@@ -116,9 +116,7 @@ def test_recordings_of_one_second_get_names_of_their_own(recorded: tuple[Session
 @pytest.mark.parametrize(
     "end", [ask.Reset, lambda: ask.LoadScene("Pyramid"), ask.StopRecording], ids=["reset", "scene", "stop"]
 )
-def test_a_new_beginning_finishes_it(
-    end: Callable[[], Any], recorded: tuple[Session, Watcher], tmp_path: Path
-) -> None:
+def test_a_new_beginning_finishes_it(end: Callable[[], Any], recorded: tuple[Session, Watcher], tmp_path: Path) -> None:
     session, watcher = recorded
     session.submit(ask.StartRecording())
     step_by_step(session, watcher, 2)
@@ -138,9 +136,7 @@ def test_closing_finishes_it(tmp_path: Path) -> None:
     assert names(session.last_recording.parent) == [session.last_recording.name]
 
 
-def test_a_failing_step_finishes_it_with_the_last_good_state(
-    recorded: tuple[Session, Watcher], tmp_path: Path
-) -> None:
+def test_a_failing_step_finishes_it_with_the_last_good_state(recorded: tuple[Session, Watcher], tmp_path: Path) -> None:
     session, watcher = recorded
     session.submit(ask.StartRecording())
     step_by_step(session, watcher, 2)
