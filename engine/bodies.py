@@ -176,7 +176,7 @@ class Body:
         body = self._body
         local = unrotate(self.direction, Vec2(x, y) - self.position)
         shape = SHAPES[int(body["shape_kind"])]
-        return shape.contains(local.x, local.y, float(body["half_x"]), float(body["half_y"]))
+        return bool(shape.contains(local.x, local.y, float(body["half_x"]), float(body["half_y"])))
 
     def velocity_at(self, point: Pair) -> Vec2:
         """Velocity of the material point that is now at `point` in the world [m/s]."""

@@ -31,8 +31,12 @@ class Configured:
 
     @property
     def precision(self) -> str:
-        """Of the solver's own numbers: "single" or "double"."""
+        """Of the solver's own numbers: "single" or "double". The one setting that stays as the world was made."""
         return self._settings.precision
+
+    @precision.setter
+    def precision(self, value: str) -> None:
+        self.set(precision=value)
 
     @property
     def gravity(self) -> tuple[float, float]:

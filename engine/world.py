@@ -14,10 +14,12 @@ from engine.constants import FRICTION, ITERATIONS
 from engine.creation import add_body, add_revolute
 from engine.diagnostics import Diagnostics, diagnose
 from engine.joints.handle import RevoluteJoint
+from engine.queries import rows_at
 from engine.records import Arbiter, arbiter_list, contact_records, joint_records
 from engine.settings import Settings
 from engine.shapes import Shape
 from engine.snapshot import Snapshot, state_hash
+from engine.snapshot_check import check_tables
 from engine.stages import STAGES, prepare_step
 from engine.state import State
 from engine.tables import BODY_KINDS
@@ -217,10 +219,10 @@ class World(Configured):
         """The body of that kind under a point of the world [m]; of several, the one created last."""
         x, y = validate.vector("point", point)
         kind = validate.choice("kind", kind, BODY_KINDS)
-        for body in reversed(self.bodies):
-            if body.kind == kind and body.contains((x, y)):
-                return body
-        return None
+        state = self._state
+        rows = rows_at(state, x, y)
+        rows = rows[state.bodies.tables["bodies"]["kind"][rows] == BODY_KINDS.index(kind)]
+        return self._body_in_row(int(rows[-1])) if len(rows) else None
 
     def find_body(self, serial: int) -> Body | None:
         """The living body of that serial."""
@@ -240,12 +242,14 @@ class World(Configured):
     def restore(self, snapshot: Snapshot) -> None:
         """Goes back to a snapshot, bit for bit; handles of bodies that lived then are valid again.
 
-        It may come from another world or process, but its precision must be this world's.
+        It may come from another world or process, but its precision must be this world's. ValueError, and nothing
+        changed, if it is not what a world can be.
         """
         if not isinstance(snapshot, Snapshot):
             raise validate.refuse("snapshot", snapshot, "what World.snapshot() gave")
         if snapshot.settings.precision != self.precision:
             raise validate.refuse("snapshot.precision", snapshot.settings.precision, f"this world's {self.precision!r}")
+        check_tables(snapshot.settings, snapshot.tables)
         self._settings = snapshot.settings
         self._state.load(snapshot.tables)
 

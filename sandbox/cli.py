@@ -8,6 +8,7 @@ import os
 import sys
 from collections.abc import Sequence
 from importlib import metadata
+from typing import NoReturn
 
 # The engine is imported by the verbs, when they are looked for: a Ctrl-C in that second must find `main` at work.
 
@@ -15,11 +16,18 @@ BAD_INPUT = 2  # exit code: what was asked for cannot be
 INTERRUPTED = 130  # exit code: Ctrl-C, as shells have it
 
 
+class Parser(argparse.ArgumentParser):
+    """Says in one line what is wrong with the arguments."""
+
+    def error(self, message: str) -> NoReturn:
+        self.exit(BAD_INPUT, f"{self.prog}: {message} (see {self.prog} --help)\n")
+
+
 def make_parser() -> argparse.ArgumentParser:
     """The parser with all its verbs."""
     from sandbox.verbs import VERBS
 
-    parser = argparse.ArgumentParser(prog="tumble", description="A 2D physics engine and its laboratory.")
+    parser = Parser(prog="tumble", description="A 2D physics engine and its laboratory.")
     parser.add_argument("--version", action="version", version=f"tumble {metadata.version('tumble')}")
     verbs = parser.add_subparsers(dest="verb", metavar="VERB", required=True)
     for verb in VERBS:

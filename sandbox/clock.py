@@ -48,18 +48,18 @@ class Clock:
         self._trim(now)
 
     def rate(self, now: float | None = None) -> float:
-        """Steps a second, over the last second."""
+        """Steps a second: between the first and the last step of the last second, less while one is overdue."""
         now = time.perf_counter() if now is None else now
         self._trim(now)
-        span = min(WINDOW, max(now - self._since, self.dt))
-        return len(self._stamps) / span
+        if len(self._stamps) < 2:
+            return 0.0
+        overdue = now - self._stamps[-1] - self.dt / self.speed
+        return (len(self._stamps) - 1) / (self._stamps[-1] - self._stamps[0] + max(0.0, overdue))
 
     def behind(self, now: float | None = None) -> bool:
         """Whether the rate asked for is not reached."""
         now = time.perf_counter() if now is None else now
-        asked = self.speed / self.dt
-        short = TOLERANCE * asked - self.rate(now) > 1.0  # one step may fall on either side of the window's edge
-        return now - self._since > PATIENCE and short
+        return now - self._since > PATIENCE and self.rate(now) < TOLERANCE * self.speed / self.dt
 
     def wait(self, now: float | None = None) -> float:
         """How long until the next step is due [s]."""
@@ -68,5 +68,6 @@ class Clock:
         return max(0.0, (self.dt - owed) / self.speed)
 
     def _trim(self, now: float) -> None:
-        while self._stamps and self._stamps[0] <= now - WINDOW:
+        """Forgets what is older than the window, but not the last two steps: they are the rate of a slow world."""
+        while len(self._stamps) > 2 and self._stamps[0] < now - WINDOW:
             self._stamps.popleft()

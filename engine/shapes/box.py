@@ -61,9 +61,9 @@ class Box:
         return Box(2.0 * half_x, 2.0 * half_y)
 
     @staticmethod
-    def contains(x: float, y: float, half_x: float, half_y: float) -> bool:
-        """Whether a point in the body's frame lies in the box."""
-        return abs(x) <= half_x and abs(y) <= half_y
+    def contains(x: Any, y: Any, half_x: Any, half_y: Any) -> Any:
+        """Whether a point in the body's frame lies in the box: numbers, or arrays of them [m]."""
+        return (abs(x) <= half_x) & (abs(y) <= half_y)
 
 
 @kernel

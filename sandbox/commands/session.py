@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 from engine import validate
 from sandbox.scenes import find_scene
@@ -14,21 +15,21 @@ SPEEDS = (0.1, 4.0)  # simulated seconds per second
 class Pause:
     """Stands still."""
 
-    name = "pause"
+    name: ClassVar[str] = "pause"
 
 
 @dataclass(frozen=True)
 class Play:
     """Goes on."""
 
-    name = "play"
+    name: ClassVar[str] = "play"
 
 
 @dataclass(frozen=True)
 class StepOnce:
     """One step, then stands still."""
 
-    name = "step_once"
+    name: ClassVar[str] = "step_once"
 
 
 @dataclass(frozen=True)
@@ -36,7 +37,7 @@ class SetSpeed:
     """Simulated seconds per second."""
 
     speed: float
-    name = "set_speed"
+    name: ClassVar[str] = "set_speed"
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "speed", validate.between("speed", self.speed, *SPEEDS))
@@ -46,7 +47,7 @@ class SetSpeed:
 class Reset:
     """The scene begins again, with the settings as they are."""
 
-    name = "reset"
+    name: ClassVar[str] = "reset"
 
 
 @dataclass(frozen=True)
@@ -54,7 +55,7 @@ class LoadScene:
     """Another scene begins. UnknownScene if there is none of that name."""
 
     scene: str
-    name = "load_scene"
+    name: ClassVar[str] = "load_scene"
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "scene", find_scene(self.scene).name)
@@ -64,11 +65,11 @@ class LoadScene:
 class StartRecording:
     """Records from the next step on."""
 
-    name = "start_recording"
+    name: ClassVar[str] = "start_recording"
 
 
 @dataclass(frozen=True)
 class StopRecording:
     """Finishes the recording."""
 
-    name = "stop_recording"
+    name: ClassVar[str] = "stop_recording"

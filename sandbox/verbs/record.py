@@ -12,7 +12,7 @@ from rich.progress import track
 from engine import StepError
 from sandbox.compiling import compile_all
 from sandbox.recorder import PartFile
-from sandbox.signals import Stop, stop_requested
+from sandbox.signals import Stop, interruptible, stop_requested
 from sandbox.simulation import TIME_STEP, Simulation
 from sandbox.verbs.common import (
     BadInput,
@@ -48,8 +48,9 @@ def run(options: argparse.Namespace) -> int:
         raise BadInput(f"{options.output}: its folder does not exist")
     if options.output.exists() and not options.output.is_file():  # a folder, a device: nothing to put a file over
         raise BadInput(f"{options.output}: is no file that could be written anew")
-    with stop_requested() as stop:
+    with interruptible():
         compile_all(say, [simulation.world.precision])
+    with stop_requested() as stop:
         started = time.perf_counter()
         try:
             file = PartFile(options.output, open_recorder, simulation)

@@ -9,7 +9,7 @@ from pathlib import Path
 from sandbox.compiling import compile_all
 from sandbox.recorder import RecordingStart
 from sandbox.session import Session
-from sandbox.signals import stop_requested
+from sandbox.signals import interruptible, stop_requested
 from sandbox.verbs.common import BadInput, add_address, add_settings, chosen_settings, say, scene_named
 from sandbox.viewer import Viewer
 
@@ -36,8 +36,9 @@ def run(options: argparse.Namespace) -> int:
 
     scene = scene_named(options.scene)
     settings = chosen_settings(options)
-    with stop_requested() as stop:
+    with interruptible():
         compile_all(say, [settings.get("precision", "single")])
+    with stop_requested() as stop:
         session = Session(scene.name, open_recorder=open_recorder, record_dir=options.record_dir, **settings)
         try:
             app = App(session, host=options.host, port=options.port)

@@ -28,7 +28,9 @@ def run(options: argparse.Namespace) -> int:
         data.append(row)
         table.add_row(*(str(value) for value in row.values()))
     console = Console()
+    if not console.is_terminal:  # whoever reads it takes lines as they are
+        console = Console(width=1000)
     with console.capture() as captured:
         console.print(table)
-    report(options, data, captured.get().rstrip())
+    report(options, data, "\n".join(line.rstrip() for line in captured.get().splitlines()))
     return 0

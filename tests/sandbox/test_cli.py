@@ -20,13 +20,14 @@ import pytest
 
 import recordings
 from sandbox import cli
+from sandbox import commands as ask
 from sandbox.recorder import PartFile
 from sandbox.scenes import SCENES
 from sandbox.simulation import Simulation
 from sandbox.verbs import VERBS, replay
 from sandbox.verbs import run as run_verb
 from sandbox.verbs.run import open_recorder
-from tests.sandbox.watching import LARGEST, make_unwritable
+from tests.sandbox.watching import LARGEST, make_unwritable, until
 
 Result = tuple[int, str, str]
 Tumble = Callable[..., Result]
@@ -69,11 +70,12 @@ def one_line(result: Result) -> str:
 
 
 def usage_error(result: Result) -> str:
-    """The last line of what argparse says."""
+    """The one line about wrong arguments."""
     code, out, err = result
     assert (code, out) == (2, ""), result
-    assert err.startswith("usage: ")
-    return err.splitlines()[-1]
+    assert err.startswith("tumble")
+    (line,) = err.splitlines()
+    return line
 
 
 # --- the command ------------------------------------------------------------------------------------------------------
@@ -378,8 +380,13 @@ def test_run_serves_opens_a_browser_and_ends_cleanly(
     tumble: Tumble, monkeypatch: pytest.MonkeyPatch, tmp_path: Path, number: signal.Signals
 ) -> None:
     started: list[Any] = []
-    session = run_verb.Session
-    monkeypatch.setattr(run_verb, "Session", lambda *args, **more: started.append(session(*args, **more)) or started[0])
+
+    class Noted(run_verb.Session):
+        def start(self) -> None:
+            started.append(self)
+            super().start()
+
+    monkeypatch.setattr(run_verb, "Session", Noted)
     visit = Visit(monkeypatch, number)
     code, out, _ = tumble("run", "--port", 0, "--iterations", 5, "--record-dir", tmp_path)
     assert code == 0
@@ -388,6 +395,23 @@ def test_run_serves_opens_a_browser_and_ends_cleanly(
     assert "<html" in visit.page
     assert started[0].frame.scene == "The Talk/Pyramid", "the one it begins with"
     assert started[0].frame.settings.iterations == 5
+
+
+def test_run_finishes_the_recording_under_way(tumble: Tumble, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    class Records(run_verb.Session):
+        def start(self) -> None:
+            super().start()
+            self.submit(ask.StartRecording())
+            until(lambda: self.frame.status.recording and self.frame.step > 5)
+
+    monkeypatch.setattr(run_verb, "Session", Records)
+    Visit(monkeypatch)
+    assert tumble("run", "Teeter", "--port", 0, "--record-dir", tmp_path)[0] == 0
+    (file,) = tmp_path.iterdir()
+    assert file.suffix == ".rrd"
+    code, out, _ = tumble("verify", file)
+    assert code == 0
+    assert out.endswith(" steps identical\n")
 
 
 def test_run_without_a_browser(tumble: Tumble, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -463,12 +487,10 @@ def test_replay_in_the_rerun_viewer(tumble: Tumble, monkeypatch: pytest.MonkeyPa
 
 
 def test_replayed_frames_are_the_recorded_ones(tmp_path: Path) -> None:
-    from sandbox import commands as ask
-
     simulation = Simulation("The Talk/Circles")
     file = PartFile(tmp_path / "x.rrd", open_recorder, simulation)
     expected = []
-    given = {
+    given: dict[int, list[Any]] = {
         2: [ask.SetGravity(1.0, -4.0), ask.SetIterations(4)],
         5: [ask.Spawn("box", 0.0, 15.0)],
         6: [ask.SetSwitch("warm_starting", False), ask.SetSolver("sequential_impulses")],

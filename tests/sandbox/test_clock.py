@@ -45,6 +45,22 @@ def test_keeps_real_time(speed: float) -> None:
     assert not time.clock.behind(time.now)
 
 
+@pytest.mark.parametrize("speed", [0.5, 1.0, 4.0])
+def test_the_rate_is_the_one_kept(speed: float) -> None:
+    time = FakeTime(speed)
+    time.run(3.0)
+    for _ in range(50):
+        time.run(0.37 / 60)
+        assert time.clock.rate(time.now) == pytest.approx(60 * speed, rel=1e-3)
+
+
+def test_the_rate_falls_while_a_step_is_overdue() -> None:
+    time = FakeTime()
+    time.run(3.0)
+    time.now += 2.0
+    assert time.clock.rate(time.now) < 30.0
+
+
 def test_waits_until_the_next_step_is_due_and_no_longer() -> None:
     time = FakeTime()
     assert time.turn() == 0
@@ -56,6 +72,11 @@ def test_waits_until_the_next_step_is_due_and_no_longer() -> None:
     assert time.turn() == 1
     time.now += 10.0
     assert time.clock.wait(time.now) == 0.0
+
+
+@pytest.mark.parametrize("speed", [0.1, 4.0])
+def test_waits_as_long_as_the_speed_asks(speed: float) -> None:
+    assert FakeTime(speed).clock.wait(1000.0) == pytest.approx(DT / speed)
 
 
 @given(st.lists(st.floats(0.0, 3.9 * DT), max_size=50))
@@ -109,10 +130,21 @@ def test_forgets_a_pause() -> None:
     assert time.clock.rate(time.now) == pytest.approx(60, rel=0.1), "known before a whole second has gone by"
 
 
+def test_forgets_what_was_owed_before_a_pause() -> None:
+    time = FakeTime()
+    time.now += 0.9 * DT
+    assert time.turn() == 0
+    time.clock.restart(time.now)
+    time.now += 0.2 * DT
+    assert time.turn() == 0
+
+
 def test_reads_the_wall_clock_by_itself() -> None:
     clock = Clock(1e9)
     assert clock.due() == 0
     assert 0.0 < clock.wait() <= 1e9
+    clock.count()
+    assert clock.rate() == 0.0  # of one step nobody knows
     clock.count()
     assert clock.rate() > 0.0
     clock.restart()

@@ -112,7 +112,7 @@ def recorded_by_hand(path: Path, simulation: Simulation, commands: dict[int, lis
     return recordings.read(file.finish())
 
 
-COMMANDS = {
+COMMANDS: dict[int, list[Any]] = {
     3: [ask.MoveHand(1, 4.0, 8.0)],
     8: [ask.Spawn("circle", 1.0, 14.0, 0.6, count=4), ask.Grab(2, 0.67, 14.0)],
     12: [ask.SetGravity(2.0, -8.0)],

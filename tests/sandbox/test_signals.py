@@ -7,7 +7,7 @@ import threading
 
 import pytest
 
-from sandbox.signals import stop_requested
+from sandbox.signals import interruptible, stop_requested
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
@@ -37,3 +37,11 @@ def test_handlers_come_back_after_an_error() -> None:
     with pytest.raises(RuntimeError), stop_requested():
         raise RuntimeError("made up")
     assert signal.getsignal(signal.SIGINT) == before
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_what_has_nothing_to_finish_is_interrupted_at_once(number: int) -> None:
+    before = signal.getsignal(signal.SIGTERM)
+    with pytest.raises(KeyboardInterrupt), interruptible():
+        signal.raise_signal(number)
+    assert signal.getsignal(signal.SIGTERM) == before

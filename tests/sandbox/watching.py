@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import random
 import threading
 import time
 from collections.abc import Callable, Iterator
@@ -94,6 +95,7 @@ class LivelyHands:
 
     def __init__(self, seed: int) -> None:
         self._rng = np.random.default_rng(seed)
+        self._dice = random.Random(seed)
         self._kinds = (
             self._spawn, self._spawn, self._bomb, self._gravity, self._switch, self._iterations, self._solver,
             self._grab, self._grab, self._grab, self._move, self._move, self._move, self._move, self._release,
@@ -118,7 +120,7 @@ class LivelyHands:
         return ask.Spawn(self._pick(("box", "circle")), x, y, width, height, mass, 0.5, int(self._rng.integers(1, 4)))
 
     def _bomb(self) -> ask.Bomb:
-        return ask.Bomb.random(self._rng)
+        return ask.Bomb.random(self._dice)
 
     def _gravity(self) -> ask.SetGravity:
         return ask.SetGravity(float(self._rng.uniform(-3.0, 3.0)), float(self._rng.uniform(-20.0, 2.0)))
