@@ -11,7 +11,7 @@ import pyarrow as pa
 
 from recordings import schema
 from recordings.recording import Recording, contiguous
-from recordings.rrd import Chunk, read_chunks
+from recordings.rrd import Chunk, is_finished, read_chunks
 from recordings.schema import RecordingError
 from recordings.shot import checksum
 from recordings.start import parse_start
@@ -21,22 +21,23 @@ from recordings.stored_table import StoredTable, gather
 def read(path: Path | str) -> Recording:
     """Reads a recording and checks every step of it.
 
-    A file cut short, by a kill or a full disk, gives the steps up to the last whole block.
+    A file cut short, by a kill or a full disk, gives the steps up to the last whole block, and is not `whole`.
 
     Raises:
         RecordingError: the file is missing, no recording of tumble, too new, or damaged. The message is one line.
     """
     path = Path(path)
-    chunks = _chunks_by_path(path)
+    chunks, finished = _content(path)
     start, snapshot = parse_start(path, chunks[schema.START])
     commands = _commands(path, chunks[schema.COMMANDS])
     tables = {table.path: gather(path, table, chunks[table.path]) for table in schema.TABLES}
     stored_steps = _whole_steps(path, tables, start["step"])
-    _check_end(path, chunks[schema.END], stored_steps)
+    closed = _is_closed(path, chunks[schema.END], stored_steps)
     _check_steps(path, tables, commands)
     numbers = tables[schema.STEPS.path].rows[1:]
     return Recording(
         path=path,
+        whole=closed and finished,
         scene=start["scene"],
         version=start["version"],
         dt=start["dt"],
@@ -54,19 +55,19 @@ def read(path: Path | str) -> Recording:
     )
 
 
-def _chunks_by_path(path: Path) -> dict[str, list[Chunk]]:
-    """The chunks under /state."""
+def _content(path: Path) -> tuple[dict[str, list[Chunk]], bool]:
+    """The chunks under /state by their paths, and whether the file has its end."""
     chunks: dict[str, list[Chunk]] = defaultdict(list)
     try:
         for chunk in read_chunks(path, schema.APPLICATION, under="/state/"):
             chunks[chunk.path].append(chunk)
+        return chunks, is_finished(path)
     except FileNotFoundError:
         raise RecordingError(f"{path}: no such file") from None
     except IsADirectoryError:
         raise RecordingError(f"{path}: a folder, not a recording") from None
     except OSError as error:
         raise RecordingError(f"{path}: cannot be read: {error.strerror}") from error
-    return chunks
 
 
 def _commands(path: Path, chunks: list[Chunk]) -> dict[int, list[str]]:
@@ -94,8 +95,8 @@ def _whole_steps(path: Path, tables: dict[str, StoredTable], start_step: int) ->
     return tables[schema.STEPS.path].steps
 
 
-def _check_end(path: Path, chunks: list[Chunk], steps: np.ndarray) -> None:
-    """A recording that was closed knows its last step."""
+def _is_closed(path: Path, chunks: list[Chunk], steps: np.ndarray) -> bool:
+    """Whether the writer closed the recording, which then knows its last step."""
     for chunk in chunks:
         try:
             last = chunk.batch.column(schema.END_STEP)[0][0].as_py()
@@ -103,6 +104,7 @@ def _check_end(path: Path, chunks: list[Chunk], steps: np.ndarray) -> None:
             raise RecordingError(f"{path}: damaged at its end") from error
         if not len(steps) or steps[-1] != last:
             raise RecordingError(f"{path}: damaged: its last steps are missing")
+    return bool(chunks)
 
 
 def _check_steps(path: Path, tables: dict[str, StoredTable], commands: dict[int, list[str]]) -> None:

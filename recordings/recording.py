@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from engine import validate
 from recordings import schema
 from recordings.stored_table import StoredTable
 
@@ -36,6 +37,7 @@ class Recording:
     """A recording in memory. K steps were computed after the start, numbered from `start_step + 1`."""
 
     path: Path
+    whole: bool  # the writer closed it, and nothing is missing
     scene: str
     version: str  # of the tumble that wrote it
     dt: float  # [s], at the start
@@ -60,17 +62,17 @@ class Recording:
         """The state after a step; that of the start too.
 
         Raises:
-            ValueError: the step is not in the recording.
+            ValueError: the step is not in the recording, or no whole number.
         """
-        if not self.holds(step):
-            held = self._tables[schema.STEPS.path].steps
-            described = f"{held[0]} to {held[-1]}" if len(held) else "none"
-            raise ValueError(f"step {step} is not in {self.path}; its steps: {described}")
+        held = self._tables[schema.STEPS.path].steps
+        if not len(held):
+            raise ValueError(f"{self.path}: step = {step!r}: the recording holds no step")
+        step = validate.whole(f"{self.path}: step", step, held[0], held[-1])
         numbers = self._tables[schema.STEPS.path].at(step)[0]
         bodies = self._tables[schema.BODIES.path].at(step).view(np.float64).reshape(-1, 6)
         roster = self._tables[schema.ROSTER.path].at(step)
         return State(
-            step=int(step),
+            step=step,
             time=float(numbers["time"]),
             dt=float(numbers["dt"]),
             serials=contiguous(roster["serial"]),

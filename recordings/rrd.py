@@ -54,8 +54,14 @@ def read_chunks(path: Path, application: str, under: str = "/") -> Iterator[Chun
                 if chunk is not None:
                     yield chunk
             ended = kind == _END
-        if not ended and _has_footer(file):
+        if not ended and _has_trailer(file):
             raise RecordingError(f"{path}: damaged: its messages do not lead to its end")
+
+
+def is_finished(path: Path) -> bool:
+    """Whether the file has its very last bytes, those of a file that was closed."""
+    with path.open("rb") as file:
+        return _has_trailer(file)
 
 
 def _messages(file: BinaryIO) -> Iterator[tuple[int, int]]:
@@ -74,10 +80,11 @@ def _messages(file: BinaryIO) -> Iterator[tuple[int, int]]:
             return
 
 
-def _has_footer(file: BinaryIO) -> bool:
-    """Whether the file's last bytes are those of a finished file."""
-    file.seek(-min(_TRAILER_SIZE, os.fstat(file.fileno()).st_size), os.SEEK_END)
-    return _FOOTER_MAGIC in file.read()
+def _has_trailer(file: BinaryIO) -> bool:
+    """Whether the file's last bytes are those of a finished file: the trailer ends in the magic and a count (u32)."""
+    size = len(_FOOTER_MAGIC) + 4
+    file.seek(-min(size, os.fstat(file.fileno()).st_size), os.SEEK_END)
+    return file.read().startswith(_FOOTER_MAGIC)
 
 
 def _decode(path: Path, payload: bytes, application: str, under: str) -> Chunk | None:

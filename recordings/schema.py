@@ -176,7 +176,7 @@ class FrameLike(StateLike, Protocol):
 
 
 class StartLike(Protocol):
-    """sandbox.session.RecordingStart, by structure: what a recording starts from."""
+    """sandbox.recorder.RecordingStart, by structure: what a recording starts from."""
 
     @property
     def scene(self) -> str: ...

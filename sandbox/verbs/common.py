@@ -6,12 +6,15 @@ import argparse
 import json
 import sys
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from engine import SOLVERS, validate
 from engine.constants import MAX_ITERATIONS
 from engine.tables import REALS
 from sandbox.scenes import Scene, UnknownScene, find_scene
+
+if TYPE_CHECKING:
+    from recordings import Recording
 
 
 class BadInput(Exception):
@@ -65,6 +68,29 @@ def add_address(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--host", default="127.0.0.1", help="address to serve on; 0.0.0.0 lets other machines in")
     parser.add_argument("--port", type=whole_number(0, 65535), default=8080, help="default: 8080; 0 takes a free one")
     parser.add_argument("--no-open", action="store_true", help="do not open a browser")
+
+
+def add_recording(parser: argparse.ArgumentParser) -> None:
+    """FILE.rrd, and --partial for one that was cut short."""
+    parser.add_argument("file", type=Path, metavar="FILE.rrd")
+    parser.add_argument("--partial", action="store_true", help="of a truncated file, take what can be read")
+
+
+def chosen_recording(options: argparse.Namespace) -> Recording:
+    """The recording, with at least one step; whole, unless --partial."""
+    from recordings import RecordingError, read
+
+    try:
+        recording = read(options.file)
+    except RecordingError as error:
+        raise BadInput(str(error)) from None
+    steps = len(recording.steps)
+    if not steps:
+        reason = "holds no step" if recording.whole else "truncated; none of its steps can be read"
+        raise BadInput(f"{options.file}: {reason}")
+    if not (recording.whole or options.partial):
+        raise BadInput(f"{options.file}: truncated; its first {steps} steps can be read (--partial takes them)")
+    return recording
 
 
 def add_json(parser: argparse.ArgumentParser) -> None:

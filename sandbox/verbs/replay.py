@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import re
 import subprocess
 import webbrowser
 from dataclasses import replace
@@ -14,40 +15,46 @@ from engine import Diagnostics, Settings
 from engine.vec2 import Vec2
 from sandbox.frame import Frame, Status
 from sandbox.signals import stop_requested
-from sandbox.verbs.common import BadInput, add_address, say
+from sandbox.verbs.common import BadInput, add_address, add_recording, chosen_recording
 
 NAME = "replay"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("file", type=Path, metavar="FILE.rrd")
+    add_recording(parser)
     parser.add_argument("--viewer", choices=("page", "rerun"), default="page", help="default: page")
     add_address(parser)
 
 
 def run(options: argparse.Namespace) -> int:
-    from recordings import RecordingError, read
-
-    try:
-        recording = read(options.file)
-    except RecordingError as error:
-        raise BadInput(str(error)) from None
+    recording = chosen_recording(options)
     if options.viewer == "rerun":
         return _open_rerun(options.file)
     return _serve(options, recording)
 
 
 def _open_rerun(file: Path) -> int:
-    """Opens the file in rerun's own viewer and waits for it."""
+    """Opens the file in rerun's own viewer, which listens on this machine alone, and waits for it."""
     package = find_spec("rerun_cli")
     if package is None or package.origin is None:
         raise BadInput("the rerun viewer is not installed: it comes with rerun-sdk")
     binary = Path(package.origin).parent / "rerun"
-    say(f"opening {file} in the rerun viewer")
+    command = [str(binary), "--bind", "127.0.0.1", str(file.absolute())]
     try:
-        return subprocess.run([str(binary), str(file)], check=False).returncode
+        ended = subprocess.run(command, stderr=subprocess.PIPE, text=True, errors="replace", check=False)
     except OSError as error:
         raise BadInput(f"the rerun viewer cannot be started: {error}") from None
+    if ended.returncode:
+        raise BadInput(f"the rerun viewer failed: {_reason(ended.stderr) or f'exit code {ended.returncode}'}")
+    return 0
+
+
+def _reason(log: str) -> str:
+    """Of what the viewer wrote, the line that says why it failed: without colours and places in its source."""
+    plain = re.sub(r"\x1b\[[0-9;]*m| at \S+\.rs:\d+", "", log)
+    lines = [line.strip() for line in plain.splitlines() if line.strip()]
+    errors = [line for line in lines if line.lower().startswith("error")]
+    return [*lines, *errors][-1] if lines else ""
 
 
 def _serve(options: argparse.Namespace, recording: Any) -> int:
@@ -57,8 +64,6 @@ def _serve(options: argparse.Namespace, recording: Any) -> int:
         frames = RecordedFrames(recording)
     except (ValueError, KeyError, TypeError) as error:
         raise BadInput(f"{options.file}: cannot be played: {error}") from None
-    if not len(frames):
-        raise BadInput(f"{options.file}: holds no step")
     with stop_requested() as stop:
         try:
             app = ReplayApp(frames, recording.view, host=options.host, port=options.port, title=options.file.name)

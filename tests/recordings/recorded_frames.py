@@ -18,7 +18,7 @@ DIAGNOSTICS = Diagnostics(1.5, 2.5, (0.25, -0.5), 0.75, 0.004, 3)
 
 @dataclass(frozen=True)
 class Start:
-    """sandbox.session.RecordingStart, by structure."""
+    """sandbox.recorder.RecordingStart, by structure."""
 
     scene: str = "Stacking/Test"
     step: int = 0
