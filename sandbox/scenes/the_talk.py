@@ -17,6 +17,7 @@ from sandbox.scenes.registry import scene
 
 FRICTION = f32(0.2)
 BIAS_FACTOR = f32(0.2)
+PYRAMID_SPACING = 1.125  # of the boxes in a row [m]
 
 
 def add_ground(world: World) -> Body:
@@ -34,6 +35,17 @@ def soft_joint(mass: float, frequency: float, damping_ratio: float = f32(0.7)) -
     damper = 2.0 * mass * damping_ratio * omega
     spring = mass * omega * omega
     return {"softness": 1.0 / (damper + dt * spring), "bias_factor": dt * spring / (damper + dt * spring)}
+
+
+def add_pyramid(world: World, base: int, left: float) -> None:
+    """Boxes in rows, each of one less than the row below; the lowest of `base`, from x = left on [m].
+
+    The rows are 2 m apart: the boxes fall before they stand.
+    """
+    for row in range(base):
+        for i in range(base - row):
+            position = (left + 0.5 * PYRAMID_SPACING * row + PYRAMID_SPACING * i, 0.75 + 2.0 * row)
+            world.create_body(Box(1, 1), position=position, mass=10, friction=FRICTION)
 
 
 @scene("The Talk/Single Box", view=(0.0, 3.0, 10.0))
@@ -85,11 +97,7 @@ def randomized_stacking(world: World) -> None:
 def pyramid(world: World) -> None:
     """Seventy-eight boxes fall into a pyramid of base twelve."""
     add_ground(world)
-    base = 12
-    for row in range(base):
-        for i in range(base - row):
-            position = (-6.0 + 0.5625 * row + 1.125 * i, 0.75 + 2.0 * row)
-            world.create_body(Box(1, 1), position=position, mass=10, friction=FRICTION)
+    add_pyramid(world, base=12, left=-6.0)
 
 
 @scene("The Talk/Teeter", view=(0.0, 7.0, 20.0))

@@ -29,19 +29,26 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     recording = chosen_recording(options)
     if options.viewer == "rerun":
-        return _open_rerun(options.file)
+        return _open_rerun(options.file, whole=recording.whole)
     return _serve(options, recording)
 
 
-def _open_rerun(file: Path) -> int:
-    """Opens the file in rerun's own viewer, which listens on this machine alone, and waits for it."""
+def _open_rerun(file: Path, *, whole: bool) -> int:
+    """Opens the file in rerun's own viewer, which listens on this machine alone, and waits for it.
+
+    By its path rerun opens whole files of this suffix only; from standard input it takes what there is.
+    """
     package = find_spec("rerun_cli")
     if package is None or package.origin is None:
         raise BadInput("the rerun viewer is not installed: it comes with rerun-sdk")
     binary = Path(package.origin).parent / "rerun"
-    command = [str(binary), "--bind", "127.0.0.1", str(file.absolute())]
+    source = str(file.absolute()) if whole and file.suffix == ".rrd" else "-"
+    command = [str(binary), "--bind", "127.0.0.1", source]
     try:
-        ended = subprocess.run(command, stderr=subprocess.PIPE, text=True, errors="replace", check=False)
+        with file.open("rb") as content:
+            ended = subprocess.run(
+                command, stdin=content, stderr=subprocess.PIPE, text=True, errors="replace", check=False
+            )
     except OSError as error:
         raise BadInput(f"the rerun viewer cannot be started: {error}") from None
     if ended.returncode:
@@ -54,7 +61,7 @@ def _reason(log: str) -> str:
     plain = re.sub(r"\x1b\[[0-9;]*m| at \S+\.rs:\d+", "", log)
     lines = [line.strip() for line in plain.splitlines() if line.strip()]
     errors = [line for line in lines if line.lower().startswith("error")]
-    return [*lines, *errors][-1] if lines else ""
+    return [*lines, *errors][-1].removeprefix("Error: ") if lines else ""
 
 
 def _serve(options: argparse.Namespace, recording: Any) -> int:

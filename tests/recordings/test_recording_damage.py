@@ -87,8 +87,28 @@ def test_cut_anywhere(whole: bytes, frames: list[Frame], tmp_path: Path, fractio
         assert re.search("cut before its start|not a rerun recording", str(error))
         assert schema.START_SNAPSHOT.encode() not in whole[: position - 4000]
         return
+    assert not recording.whole
     kept = len(recording.steps) + 1
     assert recordings.compare(recording, frames[:kept]) is None
+
+
+def test_only_a_file_with_its_very_last_byte_is_whole(whole: bytes, frames: list[Frame], tmp_path: Path) -> None:
+    path = tmp_path / "cut.rrd"
+    path.write_bytes(whole)
+    assert recordings.read(path).whole
+    footer = _messages(whole)[-1][0]
+    for length in (*range(len(whole) - 40, len(whole)), footer, footer + 1, footer + 20):
+        path.write_bytes(whole[:length])
+        recording = recordings.read(path)
+        assert not recording.whole, len(whole) - length
+        assert len(recording.steps) == len(frames) - 1
+
+
+def test_a_footer_without_our_end_is_not_whole(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """As after a full disk: rerun finishes the file, but the writer did not close it."""
+    monkeypatch.setattr("recordings.rrd_file.RrdFile.finish", lambda file: file.abandon())
+    recording = recordings.read(write(tmp_path / "abandoned.rrd", steady_frames(5)))
+    assert (recording.whole, len(recording.steps)) == (False, 4)
 
 
 def test_a_cut_keeps_all_but_the_last_block(whole: bytes, frames: list[Frame], tmp_path: Path) -> None:

@@ -48,6 +48,7 @@ def test_kill_loses_no_more_than_half_a_second(tmp_path: Path) -> None:
         process.send_signal(signal.SIGKILL)
         shown = [360, *map(int, process.stdout.read().split())]
     recording = recordings.read(path)
+    assert not recording.whole
     assert recording.steps[-1] >= shown[-1] - 120  # half a second at 240 steps per second
     frames = steady_frames(2000, bodies=20, contacts=30)
     assert recordings.compare(recording, frames[: len(recording.steps) + 1]) is None
@@ -70,7 +71,8 @@ def test_an_exit_without_close_still_finishes_the_file(tmp_path: Path) -> None:
     path = tmp_path / "left.rrd"
     with run_script(LEFT_OPEN, path) as process:
         assert process.wait(30) == 3
-    assert len(recordings.read(path).steps) == 29
+    recording = recordings.read(path)
+    assert (recording.whole, len(recording.steps)) == (True, 29)
 
 
 def test_frames_are_on_disk_soon_even_if_no_more_come(tmp_path: Path) -> None:
@@ -120,6 +122,7 @@ def test_full_disk_is_told_at_the_loop(tmp_path: Path, file_size_limit: int, mon
     writer.close()  # not told twice
     assert path.stat().st_size <= file_size_limit
     recording = recordings.read(path)
+    assert not recording.whole
     assert len(recording.steps) > 0
     assert recordings.compare(recording, frames[: len(recording.steps) + 1]) is None
 

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import re
 import tempfile
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -86,8 +88,9 @@ def test_a_recording_closed_at_once_has_no_steps(tmp_path: Path) -> None:
     path = tmp_path / "none.rrd"
     recordings.Writer(path, Start()).close()
     recording = recordings.read(path)
+    assert not recording.whole, "the frame it started from is missing"
     assert recording.steps.tolist() == []
-    with pytest.raises(ValueError, match="step 0 is not in"):
+    with pytest.raises(ValueError, match="step = 0: the recording holds no step"):
         recording.state(0)
 
 
@@ -106,9 +109,11 @@ def test_commands_and_diagnostics(tmp_path: Path) -> None:
 
 def test_steps_outside_are_refused(tmp_path: Path) -> None:
     recording = recordings.read(write(tmp_path / "s.rrd", steady_frames(4, first_step=10)))
-    for step in (9, 14, -1):
-        with pytest.raises(ValueError, match=f"step {step} is not in .*: 10 to 13"):
+    wrong: tuple[Any, ...] = (9, 14, -1, 10**30, 11.5, 11.0, True, np.bool_(True), "x", None, np.array([10, 11]))
+    for step in wrong:
+        with pytest.raises(ValueError, match=re.escape(f"step = {step!r}: must be a whole number from 10 to 13")):
             recording.state(step)
+    assert recording.state(np.int64(11)).step == 11  # type: ignore[arg-type]
     assert not recording.state(13).positions.flags.writeable
 
 

@@ -5,13 +5,14 @@ from __future__ import annotations
 import json
 import logging
 import os
-import shutil
 import signal
 import socket
+import subprocess
 import urllib.request
 import webbrowser
 from collections.abc import Callable
 from dataclasses import replace
+from importlib.machinery import ModuleSpec
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +20,7 @@ import numpy as np
 import pytest
 
 import recordings
+from engine import Snapshot, StepError
 from sandbox import cli
 from sandbox import commands as ask
 from sandbox.recorder import PartFile
@@ -272,6 +274,7 @@ def test_verify(tumble: Tumble, recorded: Path) -> None:
     assert json.loads(out) == {
         "file": str(recorded),
         "scene": "The Talk/Teeter",
+        "whole": True,
         "steps": 20,
         "identical": True,
         "difference": None,
@@ -298,7 +301,45 @@ def test_verify_tells_the_first_step_body_and_field_that_differ(tumble: Tumble, 
     assert code == 1
     data = json.loads(out)
     assert (data["identical"], data["steps"]) == (False, 20)
-    assert data["difference"].startswith("step 7, body 3: angle was ")
+    was = simulation_at(7).frame().angles[3]
+    expected = {"step": 7, "body": 3, "field": "angle", "recorded": np.nextafter(was, 9.0), "computed": was}
+    assert data["difference"] == expected
+
+
+def simulation_at(step: int) -> Simulation:
+    simulation = Simulation("The Talk/Teeter")
+    for _ in range(step):
+        simulation.step()
+    return simulation
+
+
+def test_verify_tells_at_which_step_the_computing_failed(
+    tumble: Tumble, recorded: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    step = Simulation.step
+
+    def failing(self: Simulation) -> None:
+        if self.world.step_count == 8 and self.scene.name == "The Talk/Teeter":
+            raise StepError("body 3 is no longer finite")
+        step(self)
+
+    monkeypatch.setattr(Simulation, "step", failing)
+    assert tumble("verify", recorded)[:2] == (1, "different: body 3 is no longer finite\n")
+    code, out, _ = tumble("verify", recorded, "--json", "-")
+    assert code == 1
+    assert json.loads(out)["difference"] == {"step": 9, "message": "body 3 is no longer finite"}
+
+
+def test_what_is_not_finite_is_text_in_json(tumble: Tumble, tmp_path: Path) -> None:
+    simulation = Simulation("The Talk/Teeter")
+    file = PartFile(tmp_path / "x.rrd", open_recorder, simulation)
+    simulation.step()
+    frame = simulation.frame()
+    file.show(replace(frame, angles=np.full_like(frame.angles, np.inf)))
+    code, out, _ = tumble("verify", file.finish(), "--json", "-")
+    assert code == 1
+    found = json.loads(out, parse_constant=lambda name: pytest.fail(f"{name} is no JSON"))["difference"]
+    assert (found["field"], found["recorded"], found["computed"]) == ("angle", "inf", 0.0)
 
 
 @pytest.fixture
@@ -326,16 +367,55 @@ def test_bad_file_gets_one_line(
     assert str(bad_files[kind]) in one_line(tumble(verb, bad_files[kind], *options))
 
 
-def test_a_truncated_file_is_as_good_as_what_is_left(tumble: Tumble, tmp_path: Path, recorded: Path) -> None:
-    whole = recorded.read_bytes()
+@pytest.fixture(scope="module")
+def blocks(tmp_path_factory: pytest.TempPathFactory) -> bytes:
+    """The bytes of a recording of 40 steps in several blocks."""
+    file = tmp_path_factory.mktemp("blocks") / "teeter.rrd"
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("recordings.mailbox.BLOCK_BYTES", 20_000)
+        assert cli.main(["record", "Teeter", "-o", str(file), "--steps", "40"]) == 0
+    return file.read_bytes()
+
+
+VERBS_OF_A_FILE = [["verify"], ["replay", "--no-open", "--port", "0"], ["replay", "--viewer", "rerun"]]
+
+
+@pytest.mark.parametrize("verb", VERBS_OF_A_FILE)
+def test_a_truncated_file_gets_one_line(
+    tumble: Tumble, tmp_path: Path, blocks: bytes, verb: list[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(replay, "stop_requested", _stopped_at_once)  # should it serve after all
+    monkeypatch.setattr(replay.subprocess, "run", lambda command, **more: pytest.fail("opened"))
     file = tmp_path / "cut.rrd"
-    codes = set()
-    for part in (0.2, 0.5, 0.8, 0.99):
-        file.write_bytes(whole[: int(part * len(whole))])
-        code, out, err = tumble("verify", file)
-        assert (out.endswith(" steps identical\n") and not err) if code == 0 else one_line((code, out, err))
-        codes.add(code)
-    assert codes <= {0, 2}
+    kept = set()
+    for length in (*(int(part * len(blocks)) for part in (0.2, 0.4, 0.5, 0.8, 0.99)), len(blocks) - 1):
+        file.write_bytes(blocks[:length])
+        line = one_line(tumble(*verb, file))
+        steps = len(recordings.read(file).steps)
+        if steps:
+            assert line == f"tumble: {file}: truncated; its first {steps} steps can be read (--partial takes them)\n"
+        else:
+            assert line == f"tumble: {file}: truncated; none of its steps can be read\n"
+            assert one_line(tumble(*verb, file, "--partial")) == line
+        kept.add(steps)
+    assert {0, 40} < kept
+
+
+def test_partial_takes_what_can_be_read(
+    tumble: Tumble, tmp_path: Path, blocks: bytes, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    file = tmp_path / "cut.rrd"
+    file.write_bytes(blocks[: int(0.4 * len(blocks))])
+    steps = len(recordings.read(file).steps)
+    assert 0 < steps < 40
+    assert tumble("verify", file, "--partial")[:2] == (0, f"{steps} steps identical (of a file cut short)\n")
+    data = json.loads(tumble("verify", file, "--partial", "--json", "-")[1])
+    assert (data["steps"], data["whole"], data["identical"]) == (steps, False, True)
+    visit = Visit(monkeypatch)
+    assert tumble("replay", file, "--partial", "--port", 0)[0] == 0
+    assert "<html" in visit.page
+    file.write_bytes(blocks)
+    assert tumble("verify", file, "--partial")[:2] == (0, "40 steps identical\n")
 
 
 def tampered(recording: Any, **changes: Any) -> Callable[[Path], Any]:
@@ -344,7 +424,7 @@ def tampered(recording: Any, **changes: Any) -> Callable[[Path], Any]:
 
 @pytest.mark.parametrize(
     "changes",
-    [{"snapshot": b"rubbish"}, {"hands": {}}, {"settings": {"precision": "half"}},
+    [{"snapshot": b"rubbish"}, {"hands": {}}, {"hands": {"bomb": 0, "hands": []}}, {"settings": {"precision": "half"}},
      {"commands": {5: ["not a mapping"]}}, {"commands": {5: [{"command": "set_gravity", "x": 1e9, "y": 0}]}}],
 )  # fmt: skip
 def test_a_recording_that_cannot_be_computed_gets_one_line(
@@ -353,6 +433,20 @@ def test_a_recording_that_cannot_be_computed_gets_one_line(
     """Whole and unharmed, but not of this tumble."""
     monkeypatch.setattr(recordings, "read", tampered(recordings.read(recorded), **changes))
     assert "cannot be computed again" in one_line(tumble("verify", recorded))
+
+
+def test_a_snapshot_that_no_world_can_have_gets_one_line(
+    tumble: Tumble, recorded: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    recording = recordings.read(recorded)
+    snapshot = Snapshot.from_bytes(recording.snapshot)
+    bodies = snapshot.tables["bodies.bodies"].copy()
+    bodies["shape_kind"] = 77
+    crafted = Snapshot(snapshot.settings, snapshot.tables | {"bodies.bodies": bodies}).to_bytes()
+    monkeypatch.setattr(recordings, "read", tampered(recording, snapshot=crafted))
+    line = one_line(tumble("verify", recorded))
+    assert "cannot be computed again" in line
+    assert "bodies.bodies" in line
 
 
 # --- run and replay ---------------------------------------------------------------------------------------------------
@@ -468,10 +562,11 @@ def test_replay_serves_the_recording(tumble: Tumble, monkeypatch: pytest.MonkeyP
     assert "<html" in visit.page
 
 
-def test_replay_of_nothing(tumble: Tumble, tmp_path: Path) -> None:
+@pytest.mark.parametrize("verb", VERBS_OF_A_FILE)
+@pytest.mark.parametrize("more", [[], ["--partial"]])
+def test_a_recording_of_no_step_gets_one_line(tumble: Tumble, tmp_path: Path, verb: list[str], more: list[str]) -> None:
     file = PartFile(tmp_path / "x.rrd", open_recorder, Simulation("The Talk/Teeter")).finish()
-    assert "holds no step" in one_line(tumble("replay", file, "--no-open", "--port", 0))
-    assert tumble("verify", file)[:2] == (0, "0 steps identical\n")
+    assert one_line(tumble(*verb, file, *more)) == f"tumble: {file}: holds no step\n"
 
 
 def test_replay_in_the_rerun_viewer(tumble: Tumble, monkeypatch: pytest.MonkeyPatch, recorded: Path) -> None:
@@ -480,10 +575,60 @@ def test_replay_in_the_rerun_viewer(tumble: Tumble, monkeypatch: pytest.MonkeyPa
     class Ended:
         returncode = 0
 
+    run = subprocess.run
     monkeypatch.setattr(replay.subprocess, "run", lambda command, **more: called.append(command) or Ended)
     assert tumble("replay", recorded, "--viewer", "rerun")[0] == 0
-    assert called[0][1:] == [str(recorded)]
-    assert shutil.which(called[0][0]) is not None
+    assert called[0][1:] == ["--bind", "127.0.0.1", str(recorded)], "not for other machines to reach"
+    assert run([*called[0][:-1], "--version"], capture_output=True, check=False).returncode == 0
+
+
+def test_rerun_is_handed_what_it_would_not_open_by_its_path(
+    tumble: Tumble, monkeypatch: pytest.MonkeyPatch, recorded: Path, blocks: bytes, tmp_path: Path
+) -> None:
+    called = []
+
+    def run(command: list[str], stdin: Any, **_: Any) -> Any:
+        called.append((command[-1], stdin.read()))
+        return subprocess.CompletedProcess(command, 0)
+
+    monkeypatch.setattr(replay.subprocess, "run", run)
+    cut, interrupted = tmp_path / "cut.rrd", tmp_path / "x.rrd.part"
+    cut.write_bytes(blocks[: int(0.4 * len(blocks))])
+    interrupted.write_bytes(blocks)
+    assert tumble("replay", cut, "--partial", "--viewer", "rerun")[0] == 0
+    assert tumble("replay", interrupted, "--viewer", "rerun")[0] == 0
+    assert called == [("-", cut.read_bytes()), ("-", blocks)]
+
+
+LOG = """\
+\x1b[2m2026-01-01T00:00:00Z\x1b[0m \x1b[32m INFO\x1b[0m \x1b[2mre_grpc_server\x1b[0m: Listening on 127.0.0.1:9876.
+\x1b[31mError: winit: os error at /src/winit-0.30.13/src/linux/mod.rs:765: DISPLAY is not set.\x1b[0m
+note: run with `RUST_BACKTRACE=1`
+"""
+
+
+@pytest.mark.parametrize(
+    ("log", "reason"),
+    [(LOG, "winit: os error: DISPLAY is not set."), ("one\nlast words\n\n", "last words"), ("", "exit code 1")],
+)
+def test_a_rerun_viewer_that_fails_gets_one_line(
+    capfd: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+    recorded: Path,
+    tmp_path: Path,
+    log: str,
+    reason: str,
+) -> None:
+    package = tmp_path / "rerun_cli"
+    package.mkdir()
+    (package / "log").write_text(log)
+    viewer = package / "rerun"
+    viewer.write_text(f'#!/bin/sh\ncat "{package}/log" >&2\nexit 1\n')
+    viewer.chmod(0o755)
+    monkeypatch.setattr(replay, "find_spec", lambda name: ModuleSpec(name, None, origin=str(package / "__init__.py")))
+    capfd.readouterr()  # not capsys: the viewer would write past it
+    code = cli.main(["replay", str(recorded), "--viewer", "rerun"])
+    assert (code, *capfd.readouterr()) == (2, "", f"tumble: the rerun viewer failed: {reason}\n")
 
 
 def test_replayed_frames_are_the_recorded_ones(tmp_path: Path) -> None:
