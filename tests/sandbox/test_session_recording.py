@@ -16,8 +16,7 @@ from sandbox.session import Session
 from sandbox.simulation import Simulation
 from sandbox.verbs.run import open_recorder
 from sandbox.viewer import Viewer
-from tests.sandbox.test_session import PushTooHard
-from tests.sandbox.watching import Watcher, make_unwritable, running, step_by_step
+from tests.sandbox.watching import PushTooHard, Watcher, make_unwritable, running, step_by_step
 
 
 class Sheet(Watcher):

@@ -150,3 +150,17 @@ def make_unwritable(folder: Path) -> Path:
     blocker = folder / "blocker"
     blocker.write_text("a file, not a folder")
     return blocker / "runs"
+
+
+class PushTooHard(ask.PhysicsCommand):
+    """A command that no page can send: the next step fails."""
+
+    name = "push_too_hard"
+
+    def to_dict(self) -> dict[str, Any]:
+        return {"command": self.name}
+
+    def apply(self, simulation: Simulation) -> None:
+        body = simulation.world.bodies[-1]
+        body.velocity = (LARGEST, 0.0)
+        body.force = (LARGEST, 0.0)
