@@ -25,6 +25,7 @@ MOST_QUEUED = 10_000  # commands: beyond that new ones are dropped
 MOST_A_ROUND = 500  # commands obeyed in one round: a flood slows itself down, not the simulation
 LONGEST_ROUND = 0.005  # after that no further command is taken up in a round [s]
 MOST_A_STEP = 10_000  # physics commands between two steps: a flood must not fill the memory while all stands still
+QUIET = 1.0  # between two refusals in the log [s]
 IDLE = 0.05  # longest wait for a command [s]
 
 
@@ -54,6 +55,7 @@ class Session:
         self._paused = False
         self._failure = ""
         self._notice = ""
+        self._last_refusal = -QUIET
         self._applied: list[dict[str, Any]] = []  # physics commands since the last step
         self._closing = threading.Event()
         self._thread: threading.Thread | None = None
@@ -233,8 +235,7 @@ class Session:
             else:
                 self._obey_session(command)
         except ValueError as error:
-            self._notice = str(error)
-            log.warning("ignored: %s", error)
+            self._refuse(str(error))
 
     def _obey_session(self, command: Any) -> None:
         match command:
@@ -293,6 +294,14 @@ class Session:
         else:
             if finished is not None:
                 self._notice = f"recorded {finished.name}"
+
+    def _refuse(self, reason: str) -> None:
+        """Tells of a command that was ignored; in the log at most once a second, for a client may send thousands."""
+        self._notice = reason
+        now = time.perf_counter()
+        if now - self._last_refusal > QUIET:
+            self._last_refusal = now
+            log.warning("ignored: %s", reason)
 
     def _tell(self, notice: str) -> None:
         self._notice = notice

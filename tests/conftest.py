@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import shutil
 from pathlib import Path
 
 import pytest
@@ -22,10 +21,12 @@ _VULKAN_FOLDERS = ("/usr/share/vulkan/icd.d", "/usr/local/share/vulkan/icd.d", "
 @pytest.fixture(scope="session")
 def chromium() -> Path:
     """The browser's path; skips without one."""
-    path = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
+    from tests.web.browser import find_chromium  # here, so that other tests do without a browser's driver
+
+    path = find_chromium()
     if path is None:
         pytest.skip("no Chromium: apt-get install chromium")
-    return Path(path)
+    return path
 
 
 @pytest.fixture(scope="session")
@@ -43,7 +44,7 @@ def vulkan() -> list[Path]:
 
 @pytest.fixture(autouse=True)
 def _needs(request: pytest.FixtureRequest) -> None:
-    """A marked test need not ask for the fixture of the same thing."""
+    """A marked test need not ask for the fixture of the same thing; a wider fixture that uses the thing must."""
     for marker, fixture in (("browser", "chromium"), ("vulkan", "vulkan")):
         if request.node.get_closest_marker(marker) is not None:
             request.getfixturevalue(fixture)

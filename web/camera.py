@@ -16,6 +16,7 @@ from web.stage import Stage
 
 FIELD_OF_VIEW = 0.1  # rad, vertical
 LEAST_ASPECT = 1.5  # a scene's view is as wide as this times its height; narrower windows look from further away
+HUD_SHARE = 0.21  # of the picture's height, at the top: the window there lies over sky, and the scene's view below it
 TILT = 1e-3  # as a share of the distance: less is rounding
 SETTLE_TIME = 1.5  # s in which a client's camera may still report where it was before it was told where to be
 NEAREST, FURTHEST = 0.03, 12.0  # how far one may zoom, relative to the scene's own distance
@@ -37,7 +38,7 @@ class Camera:
     def show(self, stage: Stage) -> None:
         """Make every client see this stage, also those who come later."""
         self._stage = stage
-        (x, y), distance = _center(stage), _distance(stage, LEAST_ASPECT)
+        x, y, distance = _place(stage, LEAST_ASPECT)
         initial = self._server.initial_camera
         initial.near, initial.far = distance * NEAREST / 2, distance * FURTHEST * 2
         initial.position, initial.look_at = (x, y, distance), (x, y, 0.0)
@@ -49,7 +50,7 @@ class Camera:
         stage, camera = self._stage, client.camera
         if camera.image_height == 0:
             return
-        (x, y), distance = _center(stage), _distance(stage, camera.aspect)
+        x, y, distance = _place(stage, camera.aspect)
         self._aimed[client.client_id] = (x, y, distance)
         self._told[client.client_id] = time.monotonic()
         with client.atomic():
@@ -76,7 +77,7 @@ class Camera:
                 _put_upright(camera)
         elif aimed is not None and np.allclose(camera.position, aimed, rtol=1e-4):
             # Nobody moved it: then it was the window that changed its shape, or the panel that took a part of it.
-            if not math.isclose(aimed[2], _distance(self._stage, camera.aspect), rel_tol=1e-4):
+            if not math.isclose(aimed[2], _place(self._stage, camera.aspect)[2], rel_tol=1e-4):
                 self.aim(camera.client)
 
 
@@ -100,10 +101,13 @@ def _look_down(camera: viser.CameraHandle, x: float, y: float, distance: float) 
     camera.look_at = (x, y, 0.0)
 
 
-def _center(stage: Stage) -> tuple[float, float]:
-    return stage.center_x - stage.origin[0], stage.center_y - stage.origin[1]
+def shown_height(height: float, aspect: float) -> float:
+    """How many metres the whole picture is high, so that a view of `height` fits under the window."""
+    return max(height / (1.0 - HUD_SHARE), height * LEAST_ASPECT / max(aspect, 0.1))
 
 
-def _distance(stage: Stage, aspect: float) -> float:
-    widened = max(1.0, LEAST_ASPECT / max(aspect, 0.1))
-    return widened * stage.height / 2.0 / math.tan(FIELD_OF_VIEW / 2.0)
+def _place(stage: Stage, aspect: float) -> tuple[float, float, float]:
+    """Where the camera goes: the scene's view is in the middle of what the window leaves free."""
+    shown = shown_height(stage.height, aspect)
+    x, y = stage.center_x - stage.origin[0], stage.center_y - stage.origin[1]
+    return x, y + HUD_SHARE / 2.0 * shown, shown / 2.0 / math.tan(FIELD_OF_VIEW / 2.0)

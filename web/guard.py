@@ -29,6 +29,7 @@ MESSAGES_PER_SECOND = 200.0  # a hand on the mouse makes about 70
 BURST = 400.0  # messages at once, as when a tab comes back from sleep
 MOST_CLIENTS = 32
 PATIENCE = 5.0  # s of flood without a pause, after which its sender has to go
+RECOVERED = 0.5  # of the burst: who has that much left again has paused; less may come from a sleep that took too long
 LOG_LINES_PER_CLIENT = 20  # then silence, so that a hostile client cannot fill a disk
 LOG_LINES_PER_SECOND = 2.0  # of all clients together, after a burst; one may connect again and again
 LOG_BURST = 200.0
@@ -51,6 +52,7 @@ class Guard:
         self._log_allowance = Allowance(LOG_LINES_PER_SECOND, LOG_BURST)
 
     def report(self, line: str, *values: object) -> None:
+        """A warning about what somebody outside did, which is dropped when there were too many already."""
         if self._log_allowance.spend():
             log.warning(line, *values)
 
@@ -127,6 +129,7 @@ class FilteredConnection:
         self._log = report
         self._allowance = Allowance()
         self._flooded_since: float | None = None
+        self._warned = False
         self._lines_left = LOG_LINES_PER_CLIENT
 
     def __getattr__(self, name: str) -> Any:
@@ -150,24 +153,34 @@ class FilteredConnection:
     async def _keep_pace(self) -> None:
         """Not reading is what slows a flood down: it fills its own pipe, and no message of an honest client is lost."""
         wait = self._allowance.take()
-        if wait == 0.0:
+        if self._allowance.left >= RECOVERED * BURST:
             self._flooded_since = None
+        if wait == 0.0:
             return
         now = time.monotonic()
         if self._flooded_since is None:
             self._flooded_since = now
-            self._report("slowed down: too many messages")
+            self._warn()
         if now - self._flooded_since > PATIENCE:
-            self._report("thrown out: too many messages for too long")
+            self._say("thrown out: too many messages for too long")
             self._connection.transport.abort()
             raise ConnectionClosedError(None, None)
         await asyncio.sleep(wait)
 
+    def _warn(self) -> None:
+        if not self._warned:
+            self._warned = True
+            self._say("slowed down: too many messages")
+
     def _report(self, line: str) -> None:
+        """What a client can do as often as it likes; what it can do once is said in any case."""
         if self._lines_left > 0:
             self._lines_left -= 1
-            address = self._connection.remote_address
-            self._log("client %s %s%s", address and address[:2], line, "" if self._lines_left else " (last report)")
+            self._say(line if self._lines_left else f"{line} (last report)")
+
+    def _say(self, line: str) -> None:
+        address = self._connection.remote_address
+        self._log("client %s %s", address and address[:2], line)
 
 
 class Allowance:
@@ -178,6 +191,11 @@ class Allowance:
         self._burst = burst
         self._left = burst
         self._time = time.monotonic()
+
+    @property
+    def left(self) -> float:
+        """How many messages may come at once; negative while some wait for their turn."""
+        return self._left
 
     def take(self) -> float:
         """Spend one message; returns how long to wait for it [s]."""

@@ -48,6 +48,10 @@ class Page:
         self.publisher.close()
         stop_server(self.server)
 
+    def report(self, line: str, *values: object) -> None:
+        """Log what a client caused. It may do so again and again, so the guard limits how much is written."""
+        self._guard.report(line, *values)
+
     def notify(self, title: str, text: str) -> None:
         """Tell every client, for a while."""
         for client in self.server.get_clients().values():

@@ -143,7 +143,7 @@ def dominos(world: World) -> None:
     world.create_joint_revolute(chest, lid, anchor=(7, 3.5), bias_factor=BIAS_FACTOR)
 
 
-@scene("The Talk/Multi-Pendulum", view=(2.0, 3.0, 34.0))
+@scene("The Talk/Multi-Pendulum", view=(0.0, 6.0, 26.0))
 def multi_pendulum(world: World) -> None:
     """Fifteen links on soft joints swing down together."""
     before = add_ground(world)

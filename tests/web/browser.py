@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -11,7 +13,9 @@ import numpy as np
 from PIL import Image
 from playwright.sync_api import Locator, Page, sync_playwright
 
-CHROMIUM = Path("/usr/bin/chromium")
+from web.camera import HUD_SHARE, shown_height
+
+NAMES = ("chromium", "chromium-browser", "google-chrome")
 FLAGS = [
     "--no-sandbox",
     "--use-angle=swiftshader",
@@ -22,14 +26,30 @@ FLAGS = [
     "--disable-component-update",
     "--disable-sync",
 ]
+KNOWN = re.compile(  # all that the console may say, and why
+    # viser's client is built on three.js, and calls what three.js has since renamed
+    r"THREE\.Clock: This module has been deprecated\. Please use THREE\.Timer instead\."
+    # SwiftShader, which draws where there is no GPU, lacks this extension, and is slow when a picture is read back
+    r"|THREE\.WebGLRenderer: KHR_parallel_shader_compile extension not supported\."
+    r"|\[\.WebGL-0x[0-9a-f]+\] ?GL Driver Message \(OpenGL, Performance, GL_CLOSE_PATH_NV, High\): "
+    r"GPU stall due to ReadPixels( \(this message will no longer repeat\))?"
+    # viser's client wants to keep the page from scrolling, in a listener that the browser does not let
+    r"|Unable to preventDefault inside passive event listener invocation\."
+)
 CANVAS = "canvas[data-engine]"  # the one with the scene
+
+
+def find_chromium() -> Path | None:
+    """The browser that all tests and pictures use; None if there is none."""
+    path = next(filter(None, map(shutil.which, NAMES)), None)
+    return Path(path) if path else None
 
 
 @contextmanager
 def open_page(url: str, width: int = 1280, height: int = 800, scale: float = 1.0) -> Iterator[Page]:
     """The page in a browser of its own, once the scene is there. `page.complaints` is what the console said."""
     with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=str(CHROMIUM), args=FLAGS)
+        browser = playwright.chromium.launch(executable_path=find_chromium(), args=FLAGS)
         try:
             page = browser.new_page(viewport={"width": width, "height": height}, device_scale_factor=scale)
             page.complaints = []  # type: ignore[attr-defined]
@@ -61,11 +81,10 @@ def to_pixel(page: Page, view: tuple[float, float, float], x: float, y: float) -
     """Where in the window a point of the world is, as long as nobody moved the camera."""
     box: Any = page.locator(CANVAS).first.bounding_box()
     center_x, center_y, view_height = view
-    view_height *= max(1.0, 1.5 * box["height"] / box["width"])
-    per_metre = box["height"] / view_height
+    per_metre = box["height"] / shown_height(view_height, box["width"] / box["height"])
     return (
         box["x"] + box["width"] / 2 + (x - center_x) * per_metre,
-        box["y"] + box["height"] / 2 - (y - center_y) * per_metre,
+        box["y"] + box["height"] * (1.0 + HUD_SHARE) / 2 - (y - center_y) * per_metre,
     )
 
 
@@ -83,7 +102,5 @@ def _dismiss_notifications(page: Page) -> None:
 
 
 def _note(page: Page, kind: str, text: str) -> None:
-    # What SwiftShader says of its own slowness, and viser's client of itself, is not about the page.
-    known = ("GPU stall", "WebGL", "deprecated", "passive event listener")
-    if kind in ("error", "warning") and not any(word in text for word in known):
+    if kind in ("error", "warning") and not KNOWN.fullmatch(text):
         page.complaints.append(f"{kind}: {text}")  # type: ignore[attr-defined]

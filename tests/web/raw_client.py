@@ -53,8 +53,9 @@ DRAG = {
 class RawClient:
     """One connection, after the server has told it all that there is on the page."""
 
-    def __init__(self, socket: ClientConnection) -> None:
+    def __init__(self, socket: ClientConnection, url: str) -> None:
         self.socket = socket
+        self.url = url
         self.messages: list[dict[str, Any]] = []
         self._seen = 0
         self.send(CAMERA)
@@ -90,12 +91,32 @@ class RawClient:
         assert isinstance(raw, bytes)
         size = int.from_bytes(raw[8:16], "little")
         window = msgspec.msgpack.decode(zstandard.ZstdDecompressor().decompress(raw[16 : 16 + size]))
+        _fill_in(window["messages"], _buffers(raw, 16 + size, window["binaryBufferLengths"]))
         self.messages += window["messages"]
         return list(window["messages"])
+
+
+def _buffers(raw: bytes, start: int, lengths: list[int]) -> list[bytes]:
+    """The arrays that follow a window's messages, each from a multiple of eight bytes on."""
+    buffers = []
+    for length in lengths:
+        start += -start % 8
+        buffers.append(raw[start : start + length])
+        start += length
+    return buffers
+
+
+def _fill_in(messages: list[dict[str, Any]], buffers: list[bytes]) -> None:
+    """Put the arrays where the messages refer to them."""
+    for message in messages:
+        for values in (message.get("updates"), message.get("props")):
+            for name, value in (values or {}).items():
+                if isinstance(value, dict) and "__binary_index" in value:
+                    values[name] = buffers[value["__binary_index"]]
 
 
 @contextmanager
 def raw_client(url: str, **options: Any) -> Iterator[RawClient]:
     options = {"subprotocols": [PROTOCOL], "max_size": None, "compression": None, "close_timeout": 1, **options}
     with connect(url.replace("http", "ws"), **options) as socket:
-        yield RawClient(socket)
+        yield RawClient(socket, url)

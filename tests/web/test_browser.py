@@ -11,14 +11,11 @@ import pytest
 
 from sandbox.commands import Grab, MoveHand, Pause, Play, Release, SetGravity, Spawn
 from sandbox.scenes import SCENES
-from tests.web.browser import CHROMIUM, look, open_page, text_field, to_pixel
+from tests.web.browser import CANVAS, KNOWN, look, open_page, text_field, to_pixel
 from tests.web.fake_session import BODY, GROUND, FakeSession, wait_until
 from web import App
 
-pytestmark = [
-    pytest.mark.browser,
-    pytest.mark.skipif(not CHROMIUM.exists(), reason=f"needs a browser at {CHROMIUM}"),
-]
+pytestmark = pytest.mark.browser
 
 VIEW = next(iter(SCENES.values())).view
 LOW = VIEW[1] - 0.25 * VIEW[2]  # a height in the lower part of the view [m]
@@ -28,7 +25,7 @@ EMPTY = (VIEW[0] + 2.5, VIEW[1] + 3.0)
 
 
 @pytest.fixture(scope="module")
-def opened() -> Iterator[tuple[FakeSession, Any]]:
+def opened(chromium: Path) -> Iterator[tuple[FakeSession, Any]]:
     ground = (*GROUND[:4], VIEW[0], LOW - 2.0, 0.0)
     session = FakeSession([ground, BOX, CIRCLE])
     app = App(session, port=0)  # type: ignore[arg-type]
@@ -126,6 +123,35 @@ def test_the_camera_pans_but_does_not_tilt(opened: Opened, tmp_path: Path) -> No
 def test_the_browser_had_nothing_to_complain_about(opened: Opened) -> None:
     complaints = opened[1].complaints
     assert complaints == []
+    assert not KNOWN.fullmatch("WebGL: CONTEXT_LOST_WEBGL: loseContext: context lost")  # what a broken page would say
+
+
+def test_the_palette_opens_with_the_mouse_in_the_view(opened: Opened) -> None:
+    _, page = opened
+    text_field(page, "gravity y").focus()  # where letters are text
+    page.mouse.click(*to_pixel(page, VIEW, BOX[4], BOX[5]))  # on a body: nothing comes of it
+    page.keyboard.press("Control+k")
+    entry = page.get_by_text("Launch a bomb", exact=True)
+    entry.wait_for(timeout=5000)
+    page.keyboard.press("Escape")
+    entry.wait_for(state="hidden", timeout=5000)
+
+
+@pytest.mark.parametrize("size", [(1280, 800), (1400, 860), (1920, 1080)])
+def test_no_part_of_a_scene_is_behind_the_window(opened: Opened, size: tuple[int, int]) -> None:
+    _, page = opened
+    page.set_viewport_size({"width": size[0], "height": size[1]})
+    page.wait_for_timeout(300)
+    window = page.get_by_text("deepest overlap").locator("xpath=ancestor::div[contains(@style, 'width: 640px')][1]")
+    window, canvas = window.bounding_box(), page.locator(CANVAS).first.bounding_box()
+    x, y, height = VIEW
+    left, top = to_pixel(page, VIEW, x - 0.75 * height, y + 0.5 * height)
+    right, bottom = to_pixel(page, VIEW, x + 0.75 * height, y - 0.5 * height)
+    assert window["height"] > 100
+    assert top >= window["y"] + window["height"]
+    assert left >= -0.5
+    assert right <= canvas["width"] + 0.5
+    assert bottom <= canvas["height"] + 0.5
 
 
 def _colour(page: Any, picture: np.ndarray, x: float, y: float) -> np.ndarray:

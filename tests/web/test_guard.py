@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import asyncio
 import logging
 import math
 import socket
 import time
 import urllib.error
 import urllib.request
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -17,7 +19,8 @@ from sandbox.commands import Grab, MoveHand, Pause, Release, SetGravity, SetIter
 from tests.web.fake_session import FakeSession, pyramid, wait_until
 from tests.web.raw_client import CAMERA, CLICK, DRAG, raw_client
 from web import App, ListenError, PortInUse
-from web.guard import LARGEST_MESSAGE, LOG_LINES_PER_CLIENT, Allowance
+from web.guard import LARGEST_MESSAGE, LOG_LINES_PER_CLIENT, PATIENCE, Allowance, FilteredConnection
+from web.panels import Desk
 
 Served = tuple[FakeSession, App]
 
@@ -168,6 +171,72 @@ def test_who_floods_for_too_long_is_thrown_out(served: Served, monkeypatch: pyte
         _assert_page_goes_on(session, other)
 
 
+class Clock:
+    """Time that passes only while somebody sleeps, and then always for too long, as on a busy machine."""
+
+    overshoot = 0.012  # s
+
+    def __init__(self) -> None:
+        self.now = 0.0
+
+    def monotonic(self) -> float:
+        return self.now
+
+    async def sleep(self, seconds: float) -> None:
+        self.now += seconds + self.overshoot
+        assert self.now < 10 * PATIENCE, "the flood goes on and on"
+
+
+class Flood:
+    """A connection on which there is always another message, and none of them is any good."""
+
+    remote_address = ("127.0.0.1", 1)
+
+    def __init__(self) -> None:
+        self.transport = SimpleNamespace(abort=lambda: None)
+        self.lines: list[str] = []
+
+    async def recv(self) -> str:
+        return "text"
+
+    def report(self, line: str, *values: object) -> None:
+        self.lines.append(line % values)
+
+
+@pytest.fixture
+def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
+    clock = Clock()
+    monkeypatch.setattr("web.guard.time", clock)
+    monkeypatch.setattr("web.guard.asyncio", clock)
+    return clock
+
+
+def test_a_flood_ends_when_its_time_is_up_however_inexact_sleep_is(clock: Clock) -> None:
+    flood = Flood()
+    connection = FilteredConnection(flood, None, flood.report)  # type: ignore[arg-type]
+    with pytest.raises(ConnectionClosed):
+        asyncio.run(connection.recv())
+    assert PATIENCE <= clock.now < PATIENCE + 0.1
+    assert len(flood.lines) == LOG_LINES_PER_CLIENT + 2
+    assert sum("slowed down" in line for line in flood.lines) == 1
+    assert "thrown out" in flood.lines[-1]
+
+
+def test_who_pauses_between_floods_may_stay_and_is_warned_once(clock: Clock) -> None:
+    flood = Flood()
+    connection = FilteredConnection(flood, None, flood.report)  # type: ignore[arg-type]
+
+    async def send(count: int) -> None:
+        for _ in range(count):
+            await connection._keep_pace()
+
+    for _ in range(10):
+        asyncio.run(send(600))
+        clock.now += 1.1  # in which half the burst comes back
+    assert clock.now > 2 * PATIENCE
+    assert [line.endswith("slowed down: too many messages") for line in flood.lines] == [True]
+
+
 def test_there_is_a_limit_to_the_number_of_clients(served: Served, monkeypatch: pytest.MonkeyPatch) -> None:
     session, app = served
     monkeypatch.setattr("web.guard.MOST_CLIENTS", 1)
@@ -294,6 +363,18 @@ def test_a_refused_command_is_logged_and_nothing_else(served: Served, caplog: py
         session.submit = keep  # type: ignore[method-assign]
     with raw_client(app.url) as client:
         _assert_page_goes_on(session, client)
+
+
+def test_refusals_without_end_are_not_logged_without_end(served: Served, caplog: pytest.LogCaptureFixture) -> None:
+    def refuse(_: Any) -> bool:
+        raise ValueError("no room for it")
+
+    page = served[1]._page
+    desk = Desk.__new__(Desk)  # without another window on the page
+    desk.page, desk.session = page, SimpleNamespace(submit=refuse)  # type: ignore[assignment]
+    for _ in range(1000):
+        desk.submit(Pause)
+    assert 50 < caplog.text.count("no room for it") < 150  # the allowance of `_fresh_log`
 
 
 def _assert_page_goes_on(session: FakeSession, client: Any) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 import pytest
@@ -39,6 +40,24 @@ def test_what_clients_do_happens_in_the_world(live: tuple[Session, RawClient]) -
     before = session.frame.step
     client.send({"type": "CommandTriggerMessage", "uuid": client.control("Single step")})
     wait_until(lambda: session.frame.step == before + 1)
+
+
+def test_one_who_comes_while_all_stands_still_sees_the_scene_at_once(live: tuple[Session, RawClient]) -> None:
+    session, client = live
+    client.send({"type": "CommandTriggerMessage", "uuid": client.control("Pause or play")})
+    wait_until(lambda: session.frame.status.paused)
+    with raw_client(client.url) as late:  # which has been told all that there is, and nothing comes after it
+        told = [_props(message).get("batched_positions") for message in late.messages if _is_face(message)]
+        shown = np.frombuffer([places for places in told if places][-1], np.float32).reshape(-1, 3)
+        np.testing.assert_allclose(shown[:, :2], session.frame.positions, atol=1e-3)
+
+
+def _is_face(message: dict[str, Any]) -> bool:
+    return message.get("name") == "/bodies/box/face"
+
+
+def _props(message: dict[str, Any]) -> dict[str, Any]:
+    return dict(message.get("updates") or message.get("props") or {})
 
 
 def test_a_drag_pulls_a_body_softly(live: tuple[Session, RawClient]) -> None:

@@ -10,14 +10,13 @@ from typing import TYPE_CHECKING, Any, Protocol
 import viser
 
 from sandbox.frame import Frame
-from web.guard import log
 from web.page import Page
 
 if TYPE_CHECKING:
     from sandbox.session import Session
 
 SETTLE_TIME = 0.6  # s after a client's hand left a control, before the control follows the session again
-HUD_PLACE = (14, 14, 268)  # pixels: left, top, width
+HUD_PLACE = (14, 14, 640)  # pixels: left, top, width. Low and wide: web.camera.HUD_SHARE is all that it may cover
 
 Make = Callable[[], Any]
 Event = viser.GuiEvent[Any]
@@ -44,11 +43,11 @@ class Desk:
         """Queue the command that `make` returns; values that a command refuses are logged, and nothing else happens."""
         try:
             if not self.session.submit(make()):
-                log.warning("ignored: too many commands wait already")
+                self.page.report("ignored: too many commands wait already")
         except ValueError as error:
-            log.warning("ignored: %s", error)
+            self.page.report("ignored: %s", error)
         except Exception as error:  # noqa: BLE001 - no traceback reaches a user, and the page goes on
-            log.error("a command failed: %s: %s", type(error).__name__, error)
+            self.page.report("a command failed: %s: %s", type(error).__name__, error)
 
     def on_change(self, control: Any, make: Make) -> None:
         """Submit when a client changes this control; when the page itself changes it, that is not news."""

@@ -20,13 +20,17 @@ KEYS = (
     ("Ctrl K", "all commands"),
 )
 _ROW = '<div style="display:flex;gap:10px"><span style="width:6.5em;opacity:.6">{}</span><span>{}</span></div>'
+_PAGE = (
+    '<div style="padding:2px 14px 8px;font-size:.85em;line-height:1.5;display:grid;grid-auto-flow:column;'
+    'grid-template-rows:repeat(4,auto);column-gap:22px">{}</div>'
+)
 
 
 class HelpPanel:
     def __init__(self, desk: Desk) -> None:
         rows = "".join(_ROW.format(*row) for row in (*MOUSE, *KEYS))
         with desk.hud.add_tab("Help", None):
-            desk.gui.add_html(f'<div style="padding:4px 14px 10px;font-size:.85em;line-height:1.6">{rows}</div>')
+            desk.gui.add_html(_PAGE.format(rows))
 
     def update(self, frame: Frame) -> None:
         pass

@@ -17,7 +17,7 @@ from web.theme import PLOT_GRID, PLOT_LINES, PLOT_TEXT
 INTERVAL = 0.1  # s between two points
 SENDS_EVERY = 3  # points: a plot is sent as a whole each time
 POINTS = 240  # the last 24 s
-HEIGHT = 150  # pixels
+HEIGHT = 104  # pixels, with axis and legend: hardly higher than the window's other tabs
 AXIS_WIDTH = 58  # pixels: room for six digits
 
 Values = dict[str, float]
@@ -25,9 +25,10 @@ Values = dict[str, float]
 
 class PlotsPanel:
     def __init__(self, desk: Desk) -> None:
-        with desk.hud.add_tab("Plots", viser.Icon.CHART_LINE):
-            self._stages = Plot(desk.gui, "ms per step, by stage")
-            self._energy = Plot(desk.gui, "energy [J]")
+        with desk.hud.add_tab("Times [ms]", viser.Icon.CHART_LINE):
+            self._stages = Plot(desk.gui)
+        with desk.hud.add_tab("Energy [J]", viser.Icon.CHART_LINE):
+            self._energy = Plot(desk.gui)
         self._next = 0.0
         self._count = 0
         self._times: list[Values] = []  # of the frames since the last point
@@ -72,20 +73,19 @@ def _energies(frame: Frame) -> Values:
 class Plot:
     """Lines over simulated time. Which lines is known from the values, so it follows a change of solver."""
 
-    def __init__(self, gui: viser.GuiApi, title: str) -> None:
+    def __init__(self, gui: viser.GuiApi) -> None:
         self._names: tuple[str, ...] = ()
         self._points: deque[tuple[float, ...]] = deque(maxlen=POINTS)
         nothing = np.zeros(0)
         self._handle = gui.add_uplot(
             (nothing, nothing),
             series=_series(("",)),
-            title=title,
             scales={"x": uplot.Scale(time=False)},
             axes=(_axis(36), _axis(AXIS_WIDTH)),
             legend=uplot.Legend(show=True, live=False),
             cursor=uplot.Cursor(show=False),
             height=HEIGHT,
-            padding=(12, 16, 0, 0),
+            padding=(8, 16, 0, 0),
         )
 
     def clear(self) -> None:

@@ -9,7 +9,6 @@ import viser
 
 from sandbox.commands import StartRecording, StopRecording
 from sandbox.frame import Frame
-from web.guard import log
 from web.panels.desk import Desk, Event, small_text
 
 LARGEST_DOWNLOAD = 256 * 1024 * 1024  # bytes; the browser gets it through the page's own socket
@@ -68,7 +67,7 @@ class RecordingPanel:
                 return
             content = path.read_bytes()
         except OSError as error:
-            log.warning("cannot send %s: %s", path.name, error.strerror)
+            self._desk.page.report("cannot send %s: %s", path.name, error.strerror)
             _tell(event.client, f"{path.name} cannot be read.")
             return
         event.client.send_file_download(path.name, content, save_immediately=True)

@@ -15,18 +15,26 @@ INTERVAL = 0.2  # s between two updates: faster cannot be read
 SMOOTHING = 0.15  # share of a new frame in the shown stage times
 
 _ROW = '<div style="display:flex;justify-content:space-between"><span style="opacity:.6">{}</span><span>{}</span></div>'
+_STAGE = (
+    '<div style="display:grid;grid-template-columns:7px 1fr auto;gap:6px;align-items:center;white-space:nowrap">'
+    '<i style="height:7px;border-radius:2px;background:{colour}"></i>'
+    '<span style="opacity:.6;overflow:hidden;text-overflow:ellipsis">{name}</span><span>{ms:.2f}</span></div>'
+)
+_SHARE = '<i style="width:{share:.1f}%;background:{colour}"></i>'
 _BAR = (
-    '<div style="display:grid;grid-template-columns:1fr 44px 3.2em;gap:8px;align-items:center;font-size:.86em">'
-    '<span style="opacity:.6;white-space:nowrap;overflow:hidden;text-overflow:ellipsis">{name}</span>'
-    '<span style="height:4px;border-radius:2px;background:#8883">'
-    '<i style="display:block;height:4px;border-radius:2px;width:{share:.0f}%;background:{colour}"></i></span>'
-    '<span style="text-align:right">{ms:.2f}</span></div>'
+    '<div style="grid-column:1/3;display:flex;height:7px;margin:6px 0 5px;border-radius:3px;overflow:hidden">{}</div>'
 )
 _WARNING = (
-    '<div style="margin:6px 0;padding:6px 9px;border-radius:5px;border-left:3px solid {colour};'
+    '<div style="margin:0 0 4px;padding:0 9px;border-radius:5px;border-left:3px solid {colour};'
     'background:{colour}22">{text}</div>'
 )
-_PAGE = '<div style="padding:4px 14px 10px;font-size:.85em;line-height:1.55;font-variant-numeric:tabular-nums">{}</div>'
+_COLUMNS = (
+    '<div style="display:grid;grid-template-columns:125px 160px 1fr;gap:18px">'
+    "<div>{}</div><div>{}</div>"
+    '<div style="display:grid;grid-template-columns:1fr 1fr;gap:0 14px;align-content:start;font-size:.9em">{}</div>'
+    "</div>"
+)
+_PAGE = '<div style="padding:2px 14px 8px;font-size:.85em;line-height:1.5;font-variant-numeric:tabular-nums">{}</div>'
 
 
 class StatusPanel:
@@ -66,27 +74,34 @@ def status_html(frame: Frame | None, stage_ms: dict[str, float], is_live: bool =
         return _PAGE.format("waiting for the first frame")
     status, numbers = frame.status, frame.diagnostics
     asked = round(status.speed / frame.dt) if frame.dt > 0.0 else 0
-    rows = [
+    course = [
         ("time", f"{frame.time:.2f} s"),
         ("steps", f"{frame.step:,}"),
         ("steps/s", "paused" if status.paused else f"{status.steps_per_second:.0f} of {asked}"),
-        ("bodies", f"{len(frame.serials):,}"),
-        ("contacts", f"{len(frame.contacts):,}"),
-        ("deepest overlap", f"{1000.0 * numbers.max_penetration:.2f} mm"),
         ("ms per step", f"{sum(stage_ms.values()):.2f}"),
     ]
-    if not is_live:
-        rows = [row for row in rows if row[0] not in ("steps/s", "ms per step")]
-    text = _warnings(frame) + "".join(_ROW.format(html.escape(name), value) for name, value in rows)
-    return _PAGE.format(text + _bars(stage_ms))
+    content = [
+        ("bodies", f"{len(frame.serials):,}"),
+        ("contacts", f"{len(frame.contacts):,}"),
+        ("joints", f"{len(frame.joints):,}"),
+        ("deepest overlap", f"{1000.0 * numbers.max_penetration:.2f} mm"),
+    ]
+    columns = _COLUMNS.format(_rows(course if is_live else course[:2]), _rows(content), _stages(stage_ms))
+    return _PAGE.format(_warnings(frame) + columns)
 
 
-def _bars(stage_ms: dict[str, float]) -> str:
+def _rows(rows: list[tuple[str, str]]) -> str:
+    return "".join(_ROW.format(name, value) for name, value in rows)
+
+
+def _stages(stage_ms: dict[str, float]) -> str:
+    """A bar divided as the step's time is, and what its parts are."""
     total = sum(stage_ms.values()) or 1.0
-    return "".join(
-        _BAR.format(name=html.escape(name), share=100.0 * ms / total, ms=ms, colour=PLOT_LINES[index % len(PLOT_LINES)])
-        for index, (name, ms) in enumerate(stage_ms.items())
-    )
+    colours = [PLOT_LINES[index % len(PLOT_LINES)] for index in range(len(stage_ms))]
+    stages = list(zip(stage_ms.items(), colours, strict=True))
+    bar = "".join(_SHARE.format(share=100.0 * ms / total, colour=colour) for (_, ms), colour in stages)
+    names = "".join(_STAGE.format(name=html.escape(name), ms=ms, colour=colour) for (name, ms), colour in stages)
+    return _BAR.format(bar) + names
 
 
 def _warnings(frame: Frame) -> str:
