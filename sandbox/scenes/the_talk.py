@@ -93,7 +93,7 @@ def randomized_stacking(world: World) -> None:
         world.create_body(Box(1, 1), position=(f32(x), y), mass=1, friction=FRICTION)
 
 
-@scene("The Talk/Pyramid", view=(0.0, 11.5, 27.0))
+@scene("The Talk/Pyramid", view=(0.0, 7.5, 19.0))
 def pyramid(world: World) -> None:
     """Seventy-eight boxes fall into a pyramid of base twelve."""
     add_ground(world)
