@@ -58,8 +58,9 @@ def test_every_setting_is_a_property_of_the_world() -> None:
     other.set(**CHANGES)
     assert other.settings == world.settings
     assert other.settings == World(precision="double", **CHANGES).settings
-    with pytest.raises(AttributeError):
-        world.precision = "single"  # type: ignore[misc]
+    with pytest.raises(ValueError, match="precision = 'single'"):
+        world.precision = "single"
+    world.precision = "double"
 
 
 def test_switches_reach_the_step() -> None:
