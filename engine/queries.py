@@ -19,7 +19,8 @@ def rows_at(state: State, x: float, y: float) -> np.ndarray:
     away_x, away_y = x - bodies["x"], y - bodies["y"]
     local_x, local_y = c * away_x + s * away_y, c * away_y - s * away_x
     covered = np.zeros(len(bodies), bool)
-    for kind, shape in enumerate(SHAPES):
-        inside = shape.contains(local_x, local_y, bodies["half_x"], bodies["half_y"])
-        covered |= (bodies["shape_kind"] == kind) & inside
+    with np.errstate(over="ignore"):  # a body that far away does not cover the point, whatever its square
+        for kind, shape in enumerate(SHAPES):
+            inside = shape.contains(local_x, local_y, bodies["half_x"], bodies["half_y"])
+            covered |= (bodies["shape_kind"] == kind) & inside
     return state.bodies.order[covered]

@@ -64,7 +64,9 @@ class Storage:
         return row
 
     def remove(self, row: int) -> None:
-        """Gives a row back."""
+        """Gives a row back, with nothing left in it: what stood there may have been why it had to go."""
+        for table in self.tables.values():
+            table[row] = np.zeros((), table.dtype)
         self.tables[self.main]["serial"][row] = -1
         self._order = self._order[self._order != row]
         self._ascending = False

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from engine import Body
+from engine import Body, validate
 
 FREQUENCY = 5.0  # of the spring for the body's own mass [Hz]: higher follows more stiffly
 DAMPING_RATIO = 0.7
@@ -29,6 +30,14 @@ class Hand:
         q = body.direction
         x, y = point[0] - body.position.x, point[1] - body.position.y
         return cls(body.serial, q.x * x + q.y * y, q.x * y - q.y * x, point[0], point[1])
+
+    @classmethod
+    def from_dict(cls, values: Mapping[str, Any]) -> Hand:
+        """What `to_dict` gave. ValueError if a number of it is not finite."""
+        hand = cls(**values)
+        for name, value in hand.to_dict().items():
+            validate.number(name, value)
+        return hand
 
     def held_point(self, body: Body) -> tuple[float, float]:
         """Where on the body it holds, in the world [m]."""

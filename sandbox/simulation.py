@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from engine import Body, Box, Snapshot
+from engine import Body, Box, Snapshot, validate
 from engine.constants import float32_value
 from engine.shapes import SHAPES
 from sandbox.commands import PhysicsCommand
@@ -81,8 +81,9 @@ class Simulation:
         self.hands.pop(hand_id, None)
 
     def body_of(self, hand: Hand) -> Body | None:
-        """What a hand holds, None if that was destroyed."""
-        return self.world.find_body(hand.serial)
+        """What a hand holds, None if that was destroyed or cannot be moved."""
+        body = self.world.find_body(hand.serial)
+        return body if body is not None and body.kind == "dynamic" else None
 
     # --- to keep and take back ----------------------------------------------------------------------------------
 
@@ -91,10 +92,11 @@ class Simulation:
         return {"bomb": self.bomb_serial, "hands": {str(key): hand.to_dict() for key, hand in self.hands.items()}}
 
     def restore(self, snapshot: Snapshot, extras: Mapping[str, Any]) -> None:
-        """Goes back to a snapshot and the extras of the same moment."""
+        """Goes back to a snapshot and the extras of the same moment. ValueError if a hand's numbers are not finite."""
+        bomb_serial = validate.whole("bomb", extras["bomb"], -1, 2**62)
+        hands = {int(key): Hand.from_dict(hand) for key, hand in extras["hands"].items()}
         self.world.restore(snapshot)
-        self.bomb_serial = int(extras["bomb"])
-        self.hands = {int(key): Hand(**hand) for key, hand in extras["hands"].items()}
+        self.bomb_serial, self.hands = bomb_serial, hands
         self.content += 1
 
     def frame(self, commands: tuple[dict, ...] = (), status: Status | None = None) -> Frame:

@@ -34,7 +34,7 @@ def run(options: argparse.Namespace) -> int:
     try:
         compile_all(say, [recording.settings.get("precision", "single")])
         text, difference = _difference(recording)
-    except (ValueError, KeyError, TypeError, AttributeError) as error:
+    except (ValueError, KeyError, TypeError, AttributeError, ArithmeticError) as error:
         raise BadInput(f"{options.file}: cannot be computed again: {error}") from None
     steps = len(recording.steps)
     data = {

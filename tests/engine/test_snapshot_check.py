@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from engine import Box, Circle, Snapshot, World
+from engine import Box, Circle, Snapshot, StepError, World
 
 Tables = dict[str, np.ndarray]
 
@@ -91,3 +91,16 @@ def test_what_can_be_is_taken() -> None:
         source.step(1 / 60)
         world.step(1 / 60)
     assert world.state_hash() == source.state_hash()
+
+
+@pytest.mark.parametrize("precision", ["single", "double"])
+def test_what_flew_off_and_was_destroyed_does_not_spoil_a_snapshot(precision: str) -> None:
+    world = World(precision=precision)
+    lost = world.create_body(Box(1, 1))
+    world.create_body(Box(1, 1), position=(5, 0))
+    lost.force = (3e38, 0)
+    with pytest.raises(StepError):
+        world.step(1e30 if precision == "single" else 1e300)
+    lost.destroy()
+    world.step(1 / 60)
+    world.restore(world.snapshot())

@@ -153,3 +153,28 @@ def test_a_frame_tells_what_there_is() -> None:
     assert all(0.0 <= value < 1000.0 for value in frame.stage_ms.values())
     assert frame.commands == ({"command": "release", "hand": 1},)
     assert frame.settings == world.settings
+
+
+@pytest.mark.parametrize(
+    "extras",
+    [
+        {"bomb": float("inf"), "hands": {}},
+        {"bomb": -1, "hands": {"0": {"serial": 1, "anchor_x": float("nan"), "anchor_y": 0.0, "x": 0.0, "y": 0.0}}},
+        {"bomb": -1, "hands": {"0": {"serial": 1, "anchor_x": 0.0, "anchor_y": "up", "x": 0.0, "y": 0.0}}},
+    ],
+)
+def test_impossible_extras_are_refused_and_change_nothing(extras: dict) -> None:
+    simulation = Simulation("Teeter")
+    simulation.step()
+    before, snapshot = simulation.world.state_hash(), Simulation("Teeter").world.snapshot()
+    with pytest.raises(ValueError, match=r"bomb|anchor"):
+        simulation.restore(snapshot, extras)
+    assert simulation.world.state_hash() == before
+
+
+def test_a_hand_on_a_static_body_lets_go() -> None:
+    simulation = Simulation("Teeter")
+    hand = {"serial": 0, "anchor_x": 0.0, "anchor_y": 0.0, "x": 0.0, "y": 0.0}
+    simulation.restore(simulation.world.snapshot(), {"bomb": -1, "hands": {"0": hand}})
+    simulation.step()
+    assert simulation.hands == {}
