@@ -3,11 +3,14 @@
 from engine.bodies import Body
 from engine.broad_phase import BROAD_PHASES
 from engine.diagnostics import Diagnostics
+from engine.effects import EFFECTS, EffectStatus
+from engine.effects.fluid import Fluid
 from engine.errors import StepError
 from engine.joints.handle import RevoluteJoint
 from engine.records import Arbiter, Contact
 from engine.settings import Settings
-from engine.shapes import SHAPE_KINDS, Box, Circle
+from engine.shape_handle import ShapeHandle
+from engine.shapes import SHAPE_KINDS, SHAPES, Box, Capsule, Chain, Circle, Polygon, Segment, Shape
 from engine.snapshot import Snapshot
 from engine.solvers import SOLVERS
 from engine.stages import STAGES
@@ -19,18 +22,28 @@ __all__ = [
     "BODY_KINDS",
     "BROAD_PHASES",
     "CONTACT_RECORD",
+    "EFFECTS",
     "JOINT_RECORD",
+    "SHAPES",
     "SHAPE_KINDS",
     "SOLVERS",
     "STAGES",
     "Arbiter",
     "Body",
     "Box",
+    "Capsule",
+    "Chain",
     "Circle",
     "Contact",
     "Diagnostics",
+    "EffectStatus",
+    "Fluid",
+    "Polygon",
     "RevoluteJoint",
+    "Segment",
     "Settings",
+    "Shape",
+    "ShapeHandle",
     "Snapshot",
     "StepError",
     "Vec2",

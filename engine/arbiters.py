@@ -1,69 +1,72 @@
-"""Arbiters: the contacts between two bodies, and the impulses that they carry from step to step."""
+"""Arbiters: two shapes that are near each other, with the contacts and impulses that they carry from step to step."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from engine.jit import kernel
+from engine.mixing import mix
+from engine.tables import arbiter_dtype, contact_dtype, empty
+
+
+class ArbiterTable:
+    """Arbiters in ascending order of (serial1, serial2), with up to two contacts each."""
+
+    def __init__(self, precision: str, capacity: int) -> None:
+        self.rows = empty(capacity, arbiter_dtype(precision))
+        self.contacts = empty((capacity, 2), contact_dtype(precision))
+        self.count = 0
 
 
 @kernel
-def begin_arbiters(pairs, count, order, bodies, arbiters):
-    """Writes one arbiter without contacts for each pair of ranks: who meets whom, and their combined friction."""
-    for index in range(count):
-        row1 = order[pairs[index, 0]]
-        row2 = order[pairs[index, 1]]
-        arbiter = arbiters[index]
-        arbiter.body1 = row1
-        arbiter.body2 = row2
-        arbiter.serial1 = bodies[row1].serial
-        arbiter.serial2 = bodies[row2].serial
-        arbiter.friction = np.sqrt(bodies[row1].friction * bodies[row2].friction)
-        arbiter.count = 0
+def begin_arbiter(arbiter, row1, row2, shapes, colliders):
+    """Writes an arbiter without contacts."""
+    shape1 = shapes[row1]
+    shape2 = shapes[row2]
+    arbiter.serial1 = shape1.serial
+    arbiter.serial2 = shape2.serial
+    arbiter.shape1 = row1
+    arbiter.shape2 = row2
+    arbiter.body1 = shape1.body
+    arbiter.body2 = shape2.body
+    arbiter.collider = colliders[shape1.kind, shape2.kind]
+    arbiter.count = 0
+    arbiter.recyclable = 0
+    arbiter.rolling_impulse = 0
 
 
 @kernel
-def is_before(a, b):
-    """Whether arbiter a comes before b: by the serial of body1, then by that of body2."""
-    return a.serial1 < b.serial1 or (a.serial1 == b.serial1 and a.serial2 < b.serial2)
+def follow_pairs(pairs, count, shapes, colliders, old_arbiters, old_contacts, old_total, arbiters, contacts):
+    """Writes one arbiter for each pair of shape rows; those that were there before keep all that they have.
 
-
-@kernel
-def carry_impulses(old_contacts, old_index, old_count, new_contacts, new_index, new_count):
-    """Copies the accumulated impulses of every contact whose feature was there in the step before."""
-    for i in range(new_count):
-        new = new_contacts[new_index, i]
-        for k in range(old_count):
-            old = old_contacts[old_index, k]
-            if old.feature == new.feature:
-                new.normal_impulse = old.normal_impulse
-                new.tangent_impulse = old.tangent_impulse
-
-
-@kernel
-def match_arbiters(old_arbiters, old_contacts, old_total, arbiters, contacts, total, steps):
-    """Drops the arbiters without contacts, and lets the others carry impulses over from the step before.
-
-    Both tables are in ascending order of (serial1, serial2), so one walk along both finds all matches.
-    Returns the number of arbiters that are left.
+    Pairs and arbiters are in ascending order of serials, so one walk along both finds all matches.
     """
-    warm_starting = steps[0].warm_starting != 0
-    kept = 0
     k = 0
-    for index in range(total):
-        if arbiters[index].count == 0:
-            continue
-        if kept != index:
-            arbiters[kept] = arbiters[index]
-        arbiter = arbiters[kept]
-        for i in range(arbiter.count):
-            if kept != index:
-                contacts[kept, i] = contacts[index, i]
-            contacts[kept, i].normal_impulse = 0
-            contacts[kept, i].tangent_impulse = 0
-        while k < old_total and is_before(old_arbiters[k], arbiter):
+    for index in range(count):
+        serial1 = shapes[pairs[index, 0]].serial
+        serial2 = shapes[pairs[index, 1]].serial
+        while k < old_total and (
+            old_arbiters[k].serial1 < serial1
+            or (old_arbiters[k].serial1 == serial1 and old_arbiters[k].serial2 < serial2)
+        ):
             k += 1
-        if warm_starting and k < old_total and not is_before(arbiter, old_arbiters[k]):
-            carry_impulses(old_contacts, k, old_arbiters[k].count, contacts, kept, arbiter.count)
-        kept += 1
-    return kept
+        if k < old_total and old_arbiters[k].serial1 == serial1 and old_arbiters[k].serial2 == serial2:
+            arbiters[index] = old_arbiters[k]
+            contacts[index, 0] = old_contacts[k, 0]
+            contacts[index, 1] = old_contacts[k, 1]
+        else:
+            begin_arbiter(arbiters[index], pairs[index, 0], pairs[index, 1], shapes, colliders)
+
+
+@kernel
+def mix_friction(arbiters, count, shapes, rule):
+    """Writes the friction of every pair."""
+    for index in range(count):
+        arbiter = arbiters[index]
+        arbiter.friction = mix(rule, shapes[arbiter.shape1].friction, shapes[arbiter.shape2].friction)
+
+
+def indices_by_collider(arbiters: np.ndarray, count: int, colliders: int) -> list[np.ndarray]:
+    """For each collider the indices of its arbiters, ascending."""
+    kinds = arbiters["collider"][:count]
+    return [np.flatnonzero(kinds == kind) for kind in range(colliders)]

@@ -5,11 +5,19 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from engine import validate
-from engine.integrate import turn_row
-from engine.shapes import SHAPES, Shape
-from engine.tables import BODY_KINDS, DYNAMIC
-from engine.vec2 import Vec2, cross, unrotate
+from engine.constants import FRICTION
+from engine.effects import BODY_PROPERTIES
+from engine.integrate import place_rows
+from engine.properties import Part
+from engine.queries import rows_at
+from engine.shape_handle import ShapeHandle
+from engine.shapes import Shape
+from engine.tables import BODY_KINDS, STATIC
+from engine.vec2 import Vec2, cross
+from engine.weights import reweigh
 
 if TYPE_CHECKING:
     from engine.world import World
@@ -17,13 +25,24 @@ if TYPE_CHECKING:
 Pair = Sequence[float]
 
 
-class Body:
+class Body(Part):
     """A body of a world. Reading or changing one that was destroyed is a ValueError.
 
     Vectors are given back as `Vec2`: a pair (x, y) that also adds, subtracts and scales.
     """
 
     __slots__ = ("__weakref__", "_row", "serial", "world")
+
+    properties = BODY_PROPERTIES
+    noun = "body"
+
+    if TYPE_CHECKING:
+        linear_damping: float
+        angular_damping: float
+        gravity_scale: float
+        drag: float
+        magnet: float
+        attraction: float
 
     def __init__(self, world: World, row: int, serial: int) -> None:
         self.world = world
@@ -39,7 +58,8 @@ class Body:
     def __repr__(self) -> str:
         if not self.alive:
             return f"<Body {self.serial}, destroyed>"
-        return f"<Body {self.serial}: {self.kind} {self.shape} at ({self.position.x:g}, {self.position.y:g})>"
+        what = self.shape if self.shapes else "without a shape"
+        return f"<Body {self.serial}: {self.kind} {what} at ({self.position.x:g}, {self.position.y:g})>"
 
     @property
     def alive(self) -> bool:
@@ -59,18 +79,43 @@ class Body:
         return BODY_KINDS[int(self._body["kind"])]
 
     @property
+    def shapes(self) -> list[ShapeHandle]:
+        """Its shapes in the order of creation."""
+        self._check()
+        return self.world._shapes_of(self._row)
+
+    @property
     def shape(self) -> Shape:
-        body = self._body
-        return SHAPES[int(body["shape_kind"])].from_half_extents(float(body["half_x"]), float(body["half_y"]))
+        """Its first shape. ValueError if it has none."""
+        return self._first_shape().shape
+
+    def add_shape(
+        self,
+        shape: Shape,
+        *,
+        mass: float | None = None,
+        density: float | None = None,
+        friction: float = FRICTION,
+        offset: Pair = (0.0, 0.0),
+        angle: float = 0.0,
+        **properties: Any,
+    ) -> ShapeHandle:
+        """One shape more, whose place in the body's frame is offset [m] and angle [rad]; mass and centre follow.
+
+        mass [kg], or density [kg/m^2], 1 if neither is given; friction: coefficient >= 0; properties of shapes as in
+        World.create_body.
+        """
+        self._check()
+        return self.world._add_shape(self, shape, mass, density, friction, offset, angle, properties)
 
     @property
     def mass(self) -> float:
-        """[kg], infinite for a static body."""
+        """[kg], infinite for a body that no force moves."""
         return float(self._body["mass"])
 
     @property
     def inertia(self) -> float:
-        """About the centre [kg m^2], infinite for a static body."""
+        """About the centre of mass [kg m^2], infinite for a static body."""
         return float(self._body["inertia"])
 
     @property
@@ -85,26 +130,45 @@ class Body:
 
     @property
     def friction(self) -> float:
-        """Coefficient; two bodies rub with the square root of the product of theirs."""
-        return float(self._body["friction"])
+        """Coefficient of its first shape; set, of all its shapes."""
+        return self._first_shape().friction
 
     @friction.setter
     def friction(self, value: float) -> None:
-        friction = validate.non_negative("friction", value)
-        validate.in_range(self.world.precision, friction=(friction,))
-        self._body["friction"] = friction
+        for shape in self.shapes:
+            shape.friction = value
+
+    @property
+    def fixed_rotation(self) -> bool:
+        """Whether nothing turns it."""
+        return bool(self._body["fixed_rotation"])
+
+    @fixed_rotation.setter
+    def fixed_rotation(self, value: bool) -> None:
+        fixed = validate.switch("fixed_rotation", value)
+        self._body["fixed_rotation"] = fixed
+        if fixed and self.kind == "dynamic":
+            self._motion["w"] = 0.0
+        reweigh(self.world._state, self._row)
+        self.world._content_changed()
 
     # --- how it moves -------------------------------------------------------------------------------------------
 
     @property
     def position(self) -> Vec2:
-        """Centre of mass [m]."""
+        """Of its origin [m]: where it was created."""
         return Vec2(float(self._body["x"]), float(self._body["y"]))
 
     @position.setter
     def position(self, value: Pair) -> None:
         body = self._body
         body["x"], body["y"] = validate.vector("position", value)
+        self._place()
+
+    @property
+    def center(self) -> Vec2:
+        """Its centre of mass [m]."""
+        return Vec2(float(self._body["center_x"]), float(self._body["center_y"]))
 
     @property
     def angle(self) -> float:
@@ -114,7 +178,7 @@ class Body:
     @angle.setter
     def angle(self, value: float) -> None:
         self._body["angle"] = validate.number("angle", value)
-        self._turn()
+        self._place()
 
     rotation = angle  # the talk's word for it
 
@@ -145,7 +209,10 @@ class Body:
     def angular_velocity(self, value: float) -> None:
         w = validate.number("angular_velocity", value)
         validate.in_range(self.world.precision, angular_velocity=(w,))
-        self._movable("angular_velocity", value)["w"] = w
+        motion = self._movable("angular_velocity", value)
+        if w != 0.0 and self.fixed_rotation and self.kind == "dynamic":
+            raise validate.refuse("angular_velocity", value, "zero: the body's rotation is fixed")
+        motion["w"] = w
 
     @property
     def force(self) -> Vec2:
@@ -173,15 +240,13 @@ class Body:
     def contains(self, point: Pair) -> bool:
         """Whether a point of the world [m] lies in the body."""
         x, y = validate.vector("point", point)
-        body = self._body
-        local = unrotate(self.direction, Vec2(x, y) - self.position)
-        shape = SHAPES[int(body["shape_kind"])]
-        return bool(shape.contains(local.x, local.y, float(body["half_x"]), float(body["half_y"])))
+        self._check()
+        return self._row in rows_at(self.world._state, x, y)
 
     def velocity_at(self, point: Pair) -> Vec2:
         """Velocity of the material point that is now at `point` in the world [m/s]."""
         px, py = validate.vector("point", point)
-        w, v, r = self.angular_velocity, self.velocity, Vec2(px, py) - self.position
+        w, v, r = self.angular_velocity, self.velocity, Vec2(px, py) - self.center
         return Vec2(v.x - w * r.y, v.y + w * r.x)
 
     def apply_force(self, force: Pair, point: Pair | None = None) -> None:
@@ -195,7 +260,7 @@ class Body:
     def apply_impulse(self, impulse: Pair, point: Pair | None = None) -> None:
         """Changes the velocity at once by an impulse [N s], at a point of the world [m] or at the centre of mass.
 
-        A static body does not move.
+        Static and kinematic bodies do not feel it.
         """
         px, py, arm = self._lever("impulse", impulse, point)
         vx, vy = self.velocity
@@ -213,15 +278,25 @@ class Body:
     def _lever(self, name: str, value: Pair, point: Pair | None) -> tuple[float, float, Vec2]:
         """A checked vector, and the way from the centre of mass to where it acts."""
         x, y = validate.vector(name, value)
-        center = self.position
+        center = self.center
         if point is None:
             return x, y, Vec2(0.0, 0.0)
         px, py = validate.vector("point", point)
         return x, y, Vec2(px, py) - center
 
-    def _check(self) -> None:
-        if not self.alive:
-            raise ValueError(f"body = Body {self.serial}: must be a living body, this one was destroyed")
+    def _first_shape(self) -> ShapeHandle:
+        shapes = self.shapes
+        if not shapes:
+            raise ValueError(f"body = Body {self.serial}: must have a shape")
+        return shapes[0]
+
+    @property
+    def _storage(self) -> Any:
+        return self.world._state.bodies
+
+    @property
+    def _places(self) -> int:
+        return self._row
 
     @property
     def _body(self) -> Any:
@@ -234,11 +309,11 @@ class Body:
         return self.world._state.bodies.tables["motions"][self._row]
 
     def _movable(self, name: str, value: Any) -> Any:
-        if int(self._body["kind"]) != DYNAMIC:
+        if int(self._body["kind"]) == STATIC:
             raise validate.refuse(name, value, "left alone: the body is static")
         return self._motion
 
-    def _turn(self) -> None:
-        """Takes sine and cosine afresh after the angle was set."""
+    def _place(self) -> None:
+        """Takes sine, cosine and centre of mass afresh after the pose was set."""
         tables = self.world._state.bodies.tables
-        turn_row(tables["bodies"], tables["motions"], self._row)
+        place_rows(tables["bodies"], tables["motions"], np.array([self._row]))

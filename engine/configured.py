@@ -2,12 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import replace
-from typing import Any
+from typing import Any, Generic, TypeVar, overload
 
 from engine import validate
 from engine.settings import Settings
+
+T = TypeVar("T")
+
+
+class Setting(Generic[T]):
+    """One setting of the world as its attribute; settings.py says what it means."""
+
+    def __set_name__(self, owner: type, name: str) -> None:
+        self.name = name
+
+    @overload
+    def __get__(self, world: None, owner: type) -> Setting[T]: ...
+    @overload
+    def __get__(self, world: Configured, owner: type) -> T: ...
+    def __get__(self, world: Configured | None, owner: type) -> Any:
+        return self if world is None else getattr(world._settings, self.name)
+
+    def __set__(self, world: Configured, value: Any) -> None:
+        world.set(**{self.name: value})
 
 
 class Configured:
@@ -15,88 +32,44 @@ class Configured:
 
     _settings: Settings
 
+    gravity = Setting[tuple[float, float]]()
+    solver = Setting[str]()
+    substeps = Setting[int]()
+    iterations = Setting[int]()
+    precision = Setting[str]()
+    broad_phase = Setting[str]()
+    stiffness = Setting[str]()
+    contact_hertz = Setting[float]()
+    contact_damping_ratio = Setting[float]()
+    push_out_speed = Setting[float]()
+    joint_hertz = Setting[float]()
+    joint_damping_ratio = Setting[float]()
+    restitution_threshold = Setting[float]()
+    speculative_distance = Setting[float]()
+    recycling = Setting[bool]()
+    recycling_distance = Setting[float]()
+    friction_mixing = Setting[str]()
+    restitution_mixing = Setting[str]()
+    wind = Setting[tuple[float, float]]()
+    accumulate_impulses = Setting[bool]()
+    warm_starting = Setting[bool]()
+    position_correction = Setting[bool]()
+
     @property
     def settings(self) -> Settings:
         """All of them, immutable."""
         return self._settings
 
     def set(self, **changes: Any) -> None:
-        """Changes settings by name, all or none: world.set(iterations=20, warm_starting=False)."""
-        for name in changes:
-            validate.choice("setting", name, self._settings.to_dict())
-        settings = replace(self._settings, **changes)
+        """Changes settings by name, all or none: world.set(iterations=20, warm_starting=False).
+
+        Another solver brings its own number of substeps and iterations, unless they are given too.
+        """
+        settings = self._settings.changed(changes)
         if settings.precision != self.precision:
             raise validate.refuse("precision", settings.precision, "left as the world was made")
+        self._accept(settings)
         self._settings = settings
 
-    @property
-    def precision(self) -> str:
-        """Of the solver's own numbers: "single" or "double". The one setting that stays as the world was made."""
-        return self._settings.precision
-
-    @precision.setter
-    def precision(self, value: str) -> None:
-        self.set(precision=value)
-
-    @property
-    def gravity(self) -> tuple[float, float]:
-        """[m/s^2]"""
-        return self._settings.gravity
-
-    @gravity.setter
-    def gravity(self, value: Sequence[float]) -> None:
-        self.set(gravity=value)
-
-    @property
-    def solver(self) -> str:
-        """A name from engine.SOLVERS."""
-        return self._settings.solver
-
-    @solver.setter
-    def solver(self, value: str) -> None:
-        self.set(solver=value)
-
-    @property
-    def broad_phase(self) -> str:
-        """A name from engine.BROAD_PHASES."""
-        return self._settings.broad_phase
-
-    @broad_phase.setter
-    def broad_phase(self, value: str) -> None:
-        self.set(broad_phase=value)
-
-    @property
-    def iterations(self) -> int:
-        """Passes over all constraints in a step."""
-        return self._settings.iterations
-
-    @iterations.setter
-    def iterations(self, value: int) -> None:
-        self.set(iterations=value)
-
-    @property
-    def accumulate_impulses(self) -> bool:
-        """Whether the sum of a contact's impulses is clamped, not each of them."""
-        return self._settings.accumulate_impulses
-
-    @accumulate_impulses.setter
-    def accumulate_impulses(self, value: bool) -> None:
-        self.set(accumulate_impulses=value)
-
-    @property
-    def warm_starting(self) -> bool:
-        """Whether a step begins with the impulses of the step before."""
-        return self._settings.warm_starting
-
-    @warm_starting.setter
-    def warm_starting(self, value: bool) -> None:
-        self.set(warm_starting=value)
-
-    @property
-    def position_correction(self) -> bool:
-        """Whether overlapping bodies are pushed apart."""
-        return self._settings.position_correction
-
-    @position_correction.setter
-    def position_correction(self, value: bool) -> None:
-        self.set(position_correction=value)
+    def _accept(self, settings: Settings) -> None:
+        """ValueError if the world as it is cannot have these settings."""

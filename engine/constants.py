@@ -23,6 +23,47 @@ step, their impulses are lost, and piles never rest. Larger: bodies visibly sink
 JOINT_BIAS_FACTOR = float32_value(0.2)
 """Part of a joint's separation that one step removes, usual 0.1 to 0.3. Higher: the joint rings."""
 
+# --- soft_step ------------------------------------------------------------------------------------------------------
+# Usual values: those of Box2D v3 (github.com/erincatto/box2d, include/box2d/constants.h and types.h).
+
+CONTACT_HERTZ = 30.0
+"""Natural frequency of a contact with stiffness "fixed" [1/s]. Beyond an eighth of the substep rate it would ring and
+is cut off there; lower: stacks sink and buckle (a tower stands up to 14 boxes at 30 Hz without recycling)."""
+
+CONTACT_DAMPING_RATIO = 10.0
+"""Far beyond critical, so that overlap creeps out instead of springing back. Near 1: boxes bounce on their overlap."""
+
+PUSH_OUT_SPEED = 3.0
+"""Fastest that overlap is pushed apart [m/s]. Higher: overlapping bodies fly off; lower: they stay overlapped long."""
+
+JOINT_HERTZ = 60.0
+JOINT_DAMPING_RATIO = 2.0
+"""The same for joints with stiffness "fixed"; at most a quarter of the substep rate."""
+
+CONTACT_SUBSTEPS_A_CYCLE = 8.0
+JOINT_SUBSTEPS_A_CYCLE = 4.0
+"""Substeps in one period of the stiffest contact and joint: fewer ring. With stiffness "follows" all are that stiff,
+so that the error falls fourfold with every doubling of the substeps."""
+
+STATIC_STIFFENING = 2.0
+"""How much higher the frequency is of a contact with a body that no impulse moves: heaps sink less into the ground."""
+
+SPECULATIVE_DISTANCE = 0.02
+"""Contacts are made this far ahead [m], so that they act before shapes overlap. Zero: contacts flicker. Larger: bodies
+may stop at a corner they would have passed."""
+
+RECYCLING_DISTANCE = 0.05
+RECYCLING_ANGLE = 0.05
+"""A contact is kept, not found anew, while its bodies moved by less than this [m], and turned by less [rad], since it
+was found. Zero: towers of more than 14 boxes buckle at 4 substeps. Larger: contacts lag behind sliding corners."""
+
+RECYCLING_ROLL = 5e-4
+"""Nor is it kept when a round shape has turned so far that the point that touched is this much off the outline [m]: a
+tenth of a usual overlap. Larger: balls that roll bob up and down, by 4 cm at a radius of 2 m without this limit."""
+
+MAX_SUBSTEPS = 1000
+"""Most substeps that may be asked for."""
+
 # --- narrow phase -------------------------------------------------------------------------------------------------
 
 FACE_RELATIVE_TOLERANCE = float32_value(0.95)
@@ -42,6 +83,15 @@ BOUNDS_MARGIN_RELATIVE = 2.0**-22
 rounding never parts a pair that touches, at any distance from the origin. Too small: contacts of bodies that just touch
 are missed."""
 
+# --- effects --------------------------------------------------------------------------------------------------------
+
+MAGNET_CONSTANT = 1.0
+"""K in the force K p1 p2 / d^2 between two magnets: two of strength 1 at 1 m push each other with 1 N [N m^2]."""
+
+CORE_RADIUS = 0.1
+"""Nearer than this, magnets and attraction fall off to nothing, as inside a ball [m]. Zero: two bodies that meet are
+flung out of the world by one step. Larger: bodies that touch feel too little."""
+
 # --- defaults of what a user may set ------------------------------------------------------------------------------
 
 DENSITY = 1.0
@@ -50,8 +100,9 @@ DENSITY = 1.0
 FRICTION = 0.2
 """Default friction coefficient of a body: the talk's."""
 
-ITERATIONS = 10
-"""Default passes over all constraints in a step, usual 4 to 50: what accuracy costs in time."""
+RESTITUTION_THRESHOLD = 1.0
+"""Shapes that meet slower than this do not bounce [m/s]. Zero: resting bodies tremble for ever; larger: a ball stops
+while one still sees it move."""
 
 MAX_ITERATIONS = 10_000
 """Most passes that may be asked for: a step that lasts minutes is a typing error."""

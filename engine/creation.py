@@ -1,89 +1,114 @@
-"""Making bodies and joints: everything is checked first, then written, so that a refusal changes nothing."""
+"""Making bodies, shapes and joints: everything is checked first, then written, so that a refusal changes nothing."""
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from engine import validate
+from engine.blueprint import Blueprint
 from engine.bodies import Body, Pair
-from engine.constants import DENSITY, JOINT_BIAS_FACTOR
+from engine.effects import BODY_PROPERTIES, SHAPE_PROPERTIES
+from engine.integrate import place_rows
 from engine.joints.handle import RevoluteJoint
-from engine.shapes import SHAPES, Shape
-from engine.tables import BODY_KINDS, REALS
+from engine.properties import check
+from engine.shape_handle import ShapeHandle
+from engine.shapes import Shape
+from engine.tables import BODY_KINDS, DYNAMIC
 from engine.trigonometry import cos_sin
 from engine.vec2 import Vec2, unrotate
+from engine.weights import check_range, check_weight, placed_part, reweigh, together, weigh, weights_of
 
 if TYPE_CHECKING:
+    from engine.state import State
     from engine.world import World
 
 
-def mass_properties(
-    shape: Shape, kind: str, mass: float | None, density: float | None, precision: str
-) -> tuple[float, float, float, float]:
-    """Mass [kg], inertia [kg m^2] and their inverses, all checked; infinite and zero for a static body."""
-    if mass is not None and density is not None:
-        raise validate.refuse("density", density, "left out where mass is given")
-    if mass is not None:
-        mass = validate.positive("mass", mass)
-    else:
-        mass = validate.positive("density", DENSITY if density is None else density) * shape.area
-    if kind == "static":
-        return math.inf, math.inf, 0.0, 0.0
-    inertia = shape.inertia(mass)
-    # a joint multiplies two inverse masses: their product, too, must be a normal number
-    low = math.sqrt(float(np.finfo(REALS[precision]).tiny))
-    for name, value in (("mass", mass), ("inertia", inertia)):
-        if not low < value < 1.0 / low:
-            raise validate.refuse(name, value, f"from {low:.2g} to {1.0 / low:.2g} in {precision} precision")
-    return mass, inertia, 1.0 / mass, 1.0 / inertia
-
-
-def add_body(
+def add_bodies(
     world: World,
-    shape: Shape,
-    position: Pair,
-    angle: float,
+    shape: Shape | None,
+    positions: np.ndarray,
+    angles: np.ndarray,
     kind: str,
     mass: float | None,
     density: float | None,
     friction: float,
-    velocity: Pair,
-    angular_velocity: float,
-) -> Body:
-    """Checks everything, then writes the body's rows: World.create_body says what the arguments mean."""
-    if not isinstance(shape, SHAPES):
-        raise validate.refuse("shape", shape, "a " + " or a ".join(cls.__name__ for cls in SHAPES))
+    velocities: np.ndarray,
+    angular_velocities: np.ndarray,
+    fixed_rotation: bool,
+    offset: Pair,
+    shape_angle: float,
+    properties: dict[str, Any],
+) -> list[Body]:
+    """Checks everything, then writes the rows of all bodies: World.create_body says what the arguments mean."""
     kind = validate.choice("kind", kind, BODY_KINDS)
-    x, y = validate.vector("position", position)
-    angle = validate.number("angle", angle)
-    friction = validate.non_negative("friction", friction)
-    vx, vy = validate.vector("velocity", velocity)
-    w = validate.number("angular_velocity", angular_velocity)
-    half_x, half_y = shape.half_extents
-    validate.in_range(world.precision, shape=(half_x, half_y))
-    validate.in_range(world.precision, velocity=(vx, vy), angular_velocity=(w,), friction=(friction,))
-    if kind == "static" and (vx != 0.0 or vy != 0.0 or w != 0.0):
-        raise validate.refuse("velocity", (vx, vy, w), "zero for a static body")
-    mass, inertia, inverse_mass, inverse_inertia = mass_properties(shape, kind, mass, density, world.precision)
+    fixed_rotation = validate.switch("fixed_rotation", fixed_rotation)
+    shape_angle = validate.number("shape_angle", shape_angle)
+    of_shape = {name: value for name, value in properties.items() if name in SHAPE_PROPERTIES}
+    of_body = {name: value for name, value in properties.items() if name not in SHAPE_PROPERTIES}
+    of_body = check(world, of_body, BODY_PROPERTIES, more=SHAPE_PROPERTIES)
+    validate.in_range(
+        world.precision, velocity=np.abs(velocities).max(0, initial=0), angular_velocity=np.abs(angular_velocities)
+    )
+    if kind == "static" and (velocities.any() or angular_velocities.any()):
+        raise validate.refuse("velocity", (*velocities[0], angular_velocities[0]), "zero for a static body")
+    if kind == "dynamic" and fixed_rotation and angular_velocities.any():
+        raise validate.refuse("angular_velocity", float(angular_velocities[0]), "zero where the rotation is fixed")
+    blueprint = None
+    if shape is not None:
+        blueprint = Blueprint(world, shape, mass, density, friction, offset, shape_angle, of_shape)
+        check_weight(shape, blueprint.mass, kind, world.precision)
+    elif mass is not None or density is not None or of_shape:
+        raise validate.refuse("shape", shape, "given where mass, density or properties of a shape are")
 
-    storage = world._state.bodies
-    row = storage.add()
-    body, motion = storage.tables["bodies"][row], storage.tables["motions"][row]
-    for name, value in {
-        "x": x, "y": y, "angle": angle, "mass": mass, "inertia": inertia, "friction": friction,
-        "half_x": half_x, "half_y": half_y, "kind": BODY_KINDS.index(kind), "shape_kind": shape.kind,
-    }.items():  # fmt: skip
-        body[name] = value
-    for name, value in {
-        "vx": vx, "vy": vy, "w": w, "inverse_mass": inverse_mass, "inverse_inertia": inverse_inertia,
-    }.items():  # fmt: skip
-        motion[name] = value
-    handle = Body(world, row, int(body["serial"]))
-    handle._turn()
-    return handle
+    state = world._state
+    rows = state.bodies.add_many(len(positions))
+    bodies, motions = state.bodies.tables["bodies"], state.bodies.tables["motions"]
+    bodies["x"][rows], bodies["y"][rows] = positions[:, 0], positions[:, 1]
+    bodies["angle"][rows] = angles
+    bodies["kind"][rows] = BODY_KINDS.index(kind)
+    bodies["fixed_rotation"][rows] = fixed_rotation
+    motions["vx"][rows], motions["vy"][rows] = velocities[:, 0], velocities[:, 1]
+    motions["w"][rows] = angular_velocities
+    for name, value in of_body.items():
+        state.bodies.put(name, rows, value)
+    shape_rows = np.empty(0, np.int64) if blueprint is None else blueprint.write(state, rows)
+    weigh(state, rows, shape_rows)
+    place_rows(bodies, motions, rows)
+    return [Body(world, int(row), int(serial)) for row, serial in zip(rows, bodies["serial"][rows], strict=True)]
+
+
+def add_shape(
+    world: World,
+    body: Body,
+    shape: Shape,
+    mass: float | None,
+    density: float | None,
+    friction: float,
+    offset: Pair,
+    angle: float,
+    properties: dict[str, Any],
+) -> ShapeHandle:
+    """Puts a shape on a body, whose mass, centre and inertia follow: Body.add_shape says what the arguments mean."""
+    blueprint = Blueprint(world, shape, mass, density, friction, offset, angle, properties)
+    state = world._state
+    check_more_weight(state, body._row, blueprint, world.precision)
+    rows = blueprint.write(state, np.array([body._row]))
+    reweigh(state, body._row)
+    return ShapeHandle(world, rows, int(state.shapes.tables["shapes"]["serial"][rows[0]]))
+
+
+def check_more_weight(state: State, row: int, blueprint: Blueprint, precision: str) -> None:
+    """ValueError if the solver's precision cannot hold what a dynamic body weighs with one shape more."""
+    if int(state.bodies.tables["bodies"]["kind"][row]) != DYNAMIC or blueprint.shape.area == 0.0:
+        return
+    order, shapes = state.shapes.order, state.shapes.tables["shapes"]
+    parts = weights_of(state, order[shapes["body"][order] == row])
+    parts.append(placed_part(blueprint.shape, blueprint.mass, Vec2(*cos_sin(blueprint.angle)), blueprint.offset))
+    mass, center, inertia = together(parts)
+    validate.in_range(precision, offset=center)
+    check_range(mass, inertia, precision)
 
 
 def add_revolute(
@@ -100,21 +125,19 @@ def add_revolute(
         check_body(world, name, body)
     if body1 == body2:
         raise validate.refuse("body2", body2, "another body than body1")
-    if body1.kind == "static" and body2.kind == "static":
-        raise validate.refuse("body2", body2, "dynamic where body1 is static")
+    if body1.kind != "dynamic" and body2.kind != "dynamic":
+        raise validate.refuse("body2", body2, f"dynamic where body1 is {body1.kind}")
     x, y = validate.vector("anchor", anchor)
     softness = validate.non_negative("softness", softness)
     validate.in_range(world.precision, softness=(softness,))
-    if bias_factor is None:
-        bias_factor = JOINT_BIAS_FACTOR
-    bias_factor = validate.between("bias_factor", bias_factor, 0.0, 1.0)
+    bias = -1.0 if bias_factor is None else validate.between("bias_factor", bias_factor, 0.0, 1.0)
     collide_connected = validate.switch("collide_connected", collide_connected)
 
     values: dict[str, Any] = {
         "body1": body1._row,
         "body2": body2._row,
         "softness": softness,
-        "bias_factor": bias_factor,
+        "bias_factor": bias,
         "collide_connected": collide_connected,
     }
     for number, body in ((1, body1), (2, body2)):
@@ -137,3 +160,38 @@ def check_body(world: World, name: str, body: Any) -> Body:
     if not body.alive:
         raise validate.refuse(name, body, "a living body, this one was destroyed")
     return body
+
+
+def checked_positions(value: Any) -> np.ndarray:
+    """(N, 2) finite floats."""
+    try:
+        positions = real_numbers(value)
+    except (TypeError, ValueError):
+        positions = np.empty(0)
+    if positions.ndim != 2 or positions.shape[1] != 2:
+        if positions.shape == (0,) and hasattr(value, "__len__") and len(value) == 0:
+            return np.empty((0, 2))
+        raise validate.refuse("positions", value, "an array (N, 2) of finite numbers")
+    return finite_rows("positions", positions, len(positions), 2)
+
+
+def real_numbers(value: Any) -> np.ndarray:
+    """An array of floats; text and booleans are no numbers. TypeError or ValueError if it is something else."""
+    given = np.asarray(value)
+    if given.dtype.kind not in "fiu":
+        raise TypeError(given.dtype)
+    return given.astype(np.float64)
+
+
+def finite_rows(name: str, value: Any, count: int, width: int) -> np.ndarray:
+    """(count, width) or, for width 0, (count,) finite floats, from an array or one value for all."""
+    allowed = f"finite numbers, {count} times {width or 1} or one for all"
+    try:
+        values = real_numbers(value)
+        values = np.broadcast_to(values, (count, width) if width else (count,))
+    except (TypeError, ValueError):
+        raise validate.refuse(name, value, allowed) from None
+    if not np.isfinite(values).all():
+        bad = int(np.flatnonzero(~np.isfinite(values.reshape(count, -1)).all(axis=1))[0])
+        raise validate.refuse(f"{name}[{bad}]", values[bad], "finite")
+    return values

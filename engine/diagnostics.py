@@ -40,10 +40,10 @@ def sum_bodies(order, bodies, motions, gravity_x, gravity_y):
             vy = np.float64(motion.vy)
             w = np.float64(motion.w)
             kinetic += 0.5 * body.mass * (vx * vx + vy * vy) + 0.5 * body.inertia * w * w
-            potential -= body.mass * (gravity_x * body.x + gravity_y * body.y)
+            potential -= body.mass * (gravity_x * body.center_x + gravity_y * body.center_y)
             momentum_x += body.mass * vx
             momentum_y += body.mass * vy
-            angular += body.mass * (body.x * vy - body.y * vx) + body.inertia * w
+            angular += body.mass * (body.center_x * vy - body.center_y * vx) + body.inertia * w
     return kinetic, potential, momentum_x, momentum_y, angular
 
 
@@ -63,6 +63,7 @@ def sum_contacts(arbiters, contacts, count):
 
 def diagnose(state: State, gravity: tuple[float, float]) -> Diagnostics:
     """The diagnostics of a state, contacts being those of its last step."""
+    state.diagnosed_at = state.step_count
     tables = state.bodies.tables
     kinetic, potential, px, py, angular = sum_bodies(
         state.bodies.order, tables["bodies"], tables["motions"], gravity[0], gravity[1]

@@ -27,6 +27,7 @@ import os
 import sys
 import tempfile
 import threading
+import uuid
 from collections.abc import Callable, Iterator
 from functools import cache
 from pathlib import Path
@@ -50,6 +51,7 @@ config: Any = numba.config
 _ENGINE = Path(__file__).resolve().parent
 _SETTINGS = ("BOUNDSCHECK", "OPT", "LOOP_VECTORIZE", "SLP_VECTORIZE", "DEBUGINFO_DEFAULT", "LLVM_REFPRUNE_FLAGS")
 _KEPT = 6  # versions of one kernel on disk: those of a few edits, branches and settings
+_PROCESS = uuid.uuid4().hex[:8]  # beside the process number, which a machine gives again
 _decorating = threading.RLock()
 
 
@@ -78,9 +80,23 @@ def _compile(function: Callable[..., Any], options: dict[str, Any]) -> Any:
         before = config.CACHE_LOCATOR_CLASSES
         config.CACHE_LOCATOR_CLASSES = f"{__name__}.{KernelLocator.__name__}"
         try:
-            return numba.jit(**{"cache": folder is not None, **options})(function)
+            compiled = numba.jit(**{"cache": folder is not None, **options})(function)
         finally:
             config.CACHE_LOCATOR_CLASSES = before
+    if folder is not None and not config.DISABLE_JIT:
+        _name_apart(compiled)
+    return compiled
+
+
+def _name_apart(compiled: Any) -> None:
+    """Lets this process write code under names of its own.
+
+    numba counts: two processes that compile one kernel for different types at the same time both write file 1, and
+    whoever reads the index of the one may be given the code of the other, made for other types: it crashes.
+    """
+    file = compiled._cache._cache_file
+    numbered = file._data_name
+    file._data_name = lambda number: numbered(number).replace(".nbc", f".{os.getpid()}.{_PROCESS}.nbc")
 
 
 class KernelLocator(_CacheLocator):

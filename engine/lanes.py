@@ -58,3 +58,11 @@ def clamp(value, low, high):
 def absolute(a):
     """|a|"""
     return a if a > const(0.0, a) else -a
+
+
+@kernel
+def over(a, b):
+    """a / b; 0 where b is 0: what has no mass takes no impulse."""
+    zero = const(0.0, b)
+    none = b == zero
+    return select(none, zero, a / select(none, const(1.0, b), b))

@@ -20,17 +20,17 @@ from engine.vec2 import Vec2
 
 def origin_of(body: Any, lane: Any) -> Vec2:
     """The point from which positions around `body` are reckoned, for a solver of that lane [m]."""
-    return Vec2(body.x, body.y) if isinstance(lane, np.float32) else Vec2(0.0, 0.0)
+    return Vec2(body.center_x, body.center_y) if isinstance(lane, np.float32) else Vec2(0.0, 0.0)
 
 
 @overload(origin_of)
 def _origin_of(body, lane):
     if lane == types.float32:
-        return lambda body, lane: Vec2(body.x, body.y)
+        return lambda body, lane: Vec2(body.center_x, body.center_y)
     return lambda body, lane: Vec2(0.0, 0.0)
 
 
 @kernel
 def center_of(body, origin, lane):
-    """The centre of a body as seen from the origin, in the lane's width [m]."""
-    return Vec2(const(body.x - origin.x, lane), const(body.y - origin.y, lane))
+    """The centre of mass of a body as seen from the origin, in the lane's width [m]."""
+    return Vec2(const(body.center_x - origin.x, lane), const(body.center_y - origin.y, lane))

@@ -22,13 +22,13 @@ class Contact(NamedTuple):
     position: Vec2  # [m]
     normal: Vec2  # unit, from body1 to body2
     separation: float  # < 0: overlap [m]
-    normal_impulse: float  # accumulated P_n >= 0 [N s]
-    tangent_impulse: float  # accumulated P_t, along (normal.y, -normal.x) [N s]
+    normal_impulse: float  # what the last step gave, P_n >= 0 [N s]
+    tangent_impulse: float  # likewise P_t, along (normal.y, -normal.x) [N s]
     feature: int  # which edges meet, see narrow_phase/clip.py
 
 
 class Arbiter(NamedTuple):
-    """The contact points between two bodies; body1 is the one created first."""
+    """The contact points between two shapes of two bodies; body1 is that of the shape created first."""
 
     body1: Body
     body2: Body
@@ -37,7 +37,7 @@ class Arbiter(NamedTuple):
 
 
 @kernel
-def write_contacts(arbiters, contacts, count, records):
+def write_contacts(arbiters, contacts, count, bodies, records):
     """Writes the contacts of the first `count` arbiters as CONTACT_RECORD rows; returns how many there are."""
     total = 0
     for index in range(count):
@@ -45,16 +45,16 @@ def write_contacts(arbiters, contacts, count, records):
         for i in range(arbiter.count):
             contact = contacts[index, i]
             record = records[total]
-            record.body1 = arbiter.serial1
-            record.body2 = arbiter.serial2
+            record.body1 = bodies[arbiter.body1].serial
+            record.body2 = bodies[arbiter.body2].serial
             record.feature = contact.feature
             record.x = contact.x
             record.y = contact.y
             record.nx = arbiter.nx
             record.ny = arbiter.ny
             record.separation = contact.separation
-            record.normal_impulse = contact.normal_impulse
-            record.tangent_impulse = contact.tangent_impulse
+            record.normal_impulse = contact.given_normal
+            record.tangent_impulse = contact.given_tangent
             total += 1
     return total
 
@@ -63,7 +63,7 @@ def contact_records(state: State) -> np.ndarray:
     """(C,) CONTACT_RECORD: all contacts of the last step, in the solver's order."""
     table = state.arbiters
     records = empty(2 * table.count, CONTACT_RECORD)
-    total = write_contacts(table.rows, table.contacts, table.count, records)
+    total = write_contacts(table.rows, table.contacts, table.count, state.bodies.tables["bodies"], records)
     return np.array(records[:total], copy=True)
 
 
@@ -80,8 +80,8 @@ def joint_records(state: State) -> np.ndarray:
         records["body" + number] = body["serial"]
         records["x" + number] = body["x"] + (c * x - s * y)
         records["y" + number] = body["y"] + (s * x + c * y)
-    records["impulse_x"] = joints["impulse_x"]
-    records["impulse_y"] = joints["impulse_y"]
+    records["impulse_x"] = joints["given_x"]
+    records["impulse_y"] = joints["given_y"]
     return records
 
 
@@ -92,14 +92,16 @@ def arbiter_list(world: World) -> list[Arbiter]:
     for arbiter, contacts in zip(
         state.arbiters.rows[: state.arbiters.count], state.arbiters.contacts[: state.arbiters.count], strict=True
     ):
+        if int(arbiter["count"]) == 0:
+            continue
         normal = Vec2(float(arbiter["nx"]), float(arbiter["ny"]))
         points = tuple(
             Contact(
                 Vec2(float(contact["x"]), float(contact["y"])),
                 normal,
                 float(contact["separation"]),
-                float(contact["normal_impulse"]),
-                float(contact["tangent_impulse"]),
+                float(contact["given_normal"]),
+                float(contact["given_tangent"]),
                 int(contact["feature"]),
             )
             for contact in contacts[: int(arbiter["count"])]

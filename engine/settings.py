@@ -1,54 +1,159 @@
-"""What a user may set: immutable, checked when made."""
+"""What a user may set: immutable, checked when made. A new setting is one line here, one in configured.py.
+
+Each says how it is checked and what it means, and that is where the page and the command line read it, too.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, fields
-from typing import Any
+from dataclasses import asdict, dataclass, field, fields, replace
+from typing import Any, NamedTuple
 
-from engine import validate
+from engine import constants, mixing, validate
 from engine.broad_phase import BROAD_PHASES
-from engine.constants import ITERATIONS, MAX_ITERATIONS
 from engine.solvers import SOLVERS
 from engine.tables import REALS
+
+STIFFNESSES = ("follows", "fixed")
+TALK = ("sequential_impulses",)
+SOFT = ("soft_step",)
+
+
+class SettingInfo(NamedTuple):
+    """What there is to say of a setting."""
+
+    name: str
+    kind: str  # "number" | "whole" | "choice" | "switch" | "vector"
+    low: float = 0.0  # of numbers: what makes sense on a slider; more may be allowed
+    high: float = 0.0
+    step: float = 0.0
+    choices: tuple[str, ...] = ()
+    unit: str = ""
+    hint: str = ""
+    solvers: tuple[str, ...] = ()  # to which it matters; empty: to all
+
+    def check(self, value: Any) -> Any:
+        """The value, or ValueError naming the setting."""
+        if self.kind == "vector":
+            return validate.vector(self.name, value)
+        if self.kind == "choice":
+            return validate.choice(self.name, value, self.choices)
+        if self.kind == "switch":
+            return validate.switch(self.name, value)
+        if self.kind == "whole":
+            return validate.whole(self.name, value, 1, MOST[self.name])
+        return validate.positive(self.name, value) if self.low > 0.0 else validate.non_negative(self.name, value)
+
+
+MOST = {"iterations": constants.MAX_ITERATIONS, "substeps": constants.MAX_SUBSTEPS}
+
+
+def number(default: float, low: float, high: float, step: float, unit: str, hint: str, solvers: Any = ()) -> Any:
+    about = {"low": low, "high": high, "step": step, "unit": unit, "hint": hint, "solvers": solvers}
+    return field(default=default, metadata={"kind": "number", **about})
+
+
+def choice(default: str, choices: Any, hint: str, solvers: Any = ()) -> Any:
+    about = {"choices": tuple(choices), "hint": hint, "solvers": solvers}
+    return field(default=default, metadata={"kind": "choice", **about})
+
+
+def switch(hint: str, solvers: Any = ()) -> Any:
+    return field(default=True, metadata={"kind": "switch", "hint": hint, "solvers": solvers})
+
+
+def whole(most: int, hint: str, solvers: Any = ()) -> Any:
+    about = {"low": 1, "high": most, "step": 1, "hint": hint, "solvers": solvers}
+    return field(default=None, metadata={"kind": "whole", **about})
+
+
+def vector(default: tuple[float, float], largest: float, unit: str, hint: str) -> Any:
+    about = {"low": -largest, "high": largest, "step": 0.1, "unit": unit, "hint": hint}
+    return field(default=default, metadata={"kind": "vector", **about})
 
 
 @dataclass(frozen=True)
 class Settings:
     """All settings of a world. ValueError names the one that is wrong."""
 
-    gravity: tuple[float, float] = (0.0, -10.0)  # [m/s^2]
-    solver: str = "sequential_impulses"
-    iterations: int = ITERATIONS  # passes over all constraints in a step
-    precision: str = "single"  # of the solver's own numbers: "single" | "double"
-    broad_phase: str = "all_pairs"
-    accumulate_impulses: bool = True  # clamp the sum of a contact's impulses, not each of them
-    warm_starting: bool = True  # begin a step with the impulses of the step before
-    position_correction: bool = True  # push overlapping bodies apart
+    gravity: tuple[float, float] = vector((0.0, -10.0), 30.0, "m/s²", "how all bodies fall")
+    solver: str = choice("soft_step", SOLVERS, "how contacts and joints are kept")
+    substeps: int = whole(32, "parts of a time step: more make everything stiffer and more exact", SOFT)
+    iterations: int = whole(50, "passes over all constraints, in a step or in each substep")
+    precision: str = choice("single", REALS, "of the solver's own numbers; stays as the world was made")
+    broad_phase: str = choice("dynamic_tree", BROAD_PHASES, "how pairs that may touch are found")
+    stiffness: str = choice(
+        "follows", STIFFNESSES, "whether contacts and joints get stiffer with more substeps, or stay as set below", SOFT
+    )
+    contact_hertz: float = number(
+        constants.CONTACT_HERTZ, 5.0, 240.0, 1.0, "Hz", "of contacts, where the stiffness is fixed", SOFT
+    )
+    contact_damping_ratio: float = number(
+        constants.CONTACT_DAMPING_RATIO, 0.0, 20.0, 0.1, "", "of contacts: 1 is critical", SOFT
+    )
+    push_out_speed: float = number(
+        constants.PUSH_OUT_SPEED, 0.0, 10.0, 0.1, "m/s", "at most, of bodies that overlap", SOFT
+    )
+    joint_hertz: float = number(
+        constants.JOINT_HERTZ, 5.0, 240.0, 1.0, "Hz", "of joints, where the stiffness is fixed", SOFT
+    )
+    joint_damping_ratio: float = number(constants.JOINT_DAMPING_RATIO, 0.0, 20.0, 0.1, "", "of joints", SOFT)
+    restitution_threshold: float = number(
+        constants.RESTITUTION_THRESHOLD, 0.0, 10.0, 0.1, "m/s", "below it nothing bounces", SOFT
+    )
+    speculative_distance: float = number(
+        constants.SPECULATIVE_DISTANCE, 0.0, 0.2, 0.005, "m", "contacts are made this far ahead", SOFT
+    )
+    recycling: bool = switch("keep contacts whose bodies hardly moved: what keeps tall stacks standing", SOFT)
+    recycling_distance: float = number(
+        constants.RECYCLING_DISTANCE, 0.0, 0.2, 0.005, "m", "how far bodies move before contacts are found anew", SOFT
+    )
+    friction_mixing: str = choice("geometric", mixing.RULES, "the friction of two shapes that touch")
+    restitution_mixing: str = choice("greatest", mixing.RULES, "the restitution of two shapes that touch", SOFT)
+    wind: tuple[float, float] = vector((0.0, 0.0), 30.0, "m/s", "of the air; moves bodies that have drag")
+    accumulate_impulses: bool = switch("clamp the sum of a contact's impulses, not each alone", TALK)
+    warm_starting: bool = switch("start from the impulses of the step before")
+    position_correction: bool = switch("push bodies apart that have sunk into each other")
 
     def __post_init__(self) -> None:
-        checked: dict[str, Any] = {
-            "gravity": validate.vector("gravity", self.gravity),
-            "solver": validate.choice("solver", self.solver, SOLVERS),
-            "iterations": validate.whole("iterations", self.iterations, 1, MAX_ITERATIONS),
-            "precision": validate.choice("precision", self.precision, REALS),
-            "broad_phase": validate.choice("broad_phase", self.broad_phase, BROAD_PHASES),
-            "accumulate_impulses": validate.switch("accumulate_impulses", self.accumulate_impulses),
-            "warm_starting": validate.switch("warm_starting", self.warm_starting),
-            "position_correction": validate.switch("position_correction", self.position_correction),
-        }
-        validate.in_range(self.precision, gravity=checked["gravity"])
+        solver = SOLVERS[validate.choice("solver", self.solver, SOLVERS)]
+        checked: dict[str, Any] = {}
+        for info in describe():
+            value = getattr(self, info.name)
+            if info.kind == "whole" and value is None:
+                value = getattr(solver, info.name)  # the solver's own
+            checked[info.name] = info.check(value)
+        if checked["substeps"] != 1 and not solver.has_substeps:
+            raise validate.refuse("substeps", self.substeps, f"1 where the solver is {self.solver!r}")
         for name, value in checked.items():
             object.__setattr__(self, name, value)
+            if not isinstance(value, (str, bool)):
+                validate.in_range(self.precision, **{name: numbers_of(value)})
+
+    def changed(self, changes: Mapping[str, Any]) -> Settings:
+        """With these changes. Another solver brings its own substeps and iterations, unless they are given."""
+        for name in changes:
+            validate.choice("setting", name, self.to_dict())
+        if changes.get("solver", self.solver) != self.solver:
+            changes = {"substeps": None, "iterations": None, **changes}
+        return replace(self, **changes)
 
     def to_dict(self) -> dict[str, Any]:
         """As JSON takes it."""
-        return {**asdict(self), "gravity": list(self.gravity)}
+        return {name: list(value) if isinstance(value, tuple) else value for name, value in asdict(self).items()}
 
     @classmethod
     def from_dict(cls, values: Mapping[str, Any]) -> Settings:
         """What `to_dict` gave; an unknown name is refused."""
-        known = [field.name for field in fields(cls)]
         for name in values:
-            validate.choice("setting", name, known)
+            validate.choice("setting", name, [info.name for info in describe()])
         return cls(**values)
+
+
+def numbers_of(value: Any) -> tuple[float, ...]:
+    return value if isinstance(value, tuple) else (value,)
+
+
+def describe() -> tuple[SettingInfo, ...]:
+    """Every setting, in the order in which they stand above."""
+    return tuple(SettingInfo(item.name, **item.metadata) for item in fields(Settings))

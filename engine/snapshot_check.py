@@ -7,30 +7,73 @@ from collections.abc import Mapping
 import numpy as np
 
 from engine import validate
+from engine.effects import BODY_PROPERTIES, SHAPE_PROPERTIES
+from engine.lacking import refuse_lacking
+from engine.narrow_phase import COLLIDER_OF
 from engine.settings import Settings
 from engine.shapes import SHAPES
+from engine.shapes.box import BOX
+from engine.shapes.capsule import CAPSULE
+from engine.shapes.chain import CHAIN
+from engine.shapes.circle import CIRCLE
+from engine.shapes.polygon import POLYGON
+from engine.shapes.segment import SEGMENT
 from engine.state import State
-from engine.tables import BODY_KINDS
+from engine.tables import BODY_KINDS, HULL_POINTS
 
 MAY_BE_INFINITE = ("mass", "inertia")  # of static bodies
+SIZES = {  # what a shape cannot be without
+    BOX: ("half_x", "half_y"), CIRCLE: ("radius",), CAPSULE: ("half_x", "radius"), SEGMENT: ("half_x",),
+    CHAIN: ("half_x",),
+}  # fmt: skip
 
 
 def check_tables(settings: Settings, tables: Mapping[str, np.ndarray]) -> None:
     """ValueError, naming the table, if a world of these settings cannot have such tables."""
-    expected = State(settings).save()
+    state = State(settings)
+    expected = state.save()
+    optional = {
+        f"{name}.{column}": np.empty(0, about.dtype)
+        for name, storage in state.storages().items()
+        for column, about in storage.possible.items()
+    }
     for name in tables:
-        validate.choice("snapshot table", name, expected)
-    for name, example in expected.items():
+        validate.choice("snapshot table", name, {**expected, **optional})
+    for name, example in {**expected, **{n: e for n, e in optional.items() if n in tables}}.items():
         table = tables.get(name)
         if table is None or table.dtype != example.dtype or table.ndim != example.ndim:
             raise refuse(name, f"there, of {example.ndim} dimensions and the fields of this version")
         check_finite(name, table)
+    for name in optional.keys() & tables.keys():
+        storage = name.partition(".")[0]
+        if len(tables[name]) != len(tables[f"{storage}.{storage}"]):
+            raise refuse(name, f"as long as {storage}.{storage}")
     check_bodies(tables)
+    check_shapes(tables)
     check_joints(tables)
     check_arbiters(tables)
-    for name in ("step_count", "time"):
+    check_fluids(tables)
+    for name in ("step_count", "time", "last_dt", "explosions"):
         if tables[name] < 0:
             raise refuse(name, ">= 0")
+    state.load(dict(tables))
+    check_effects(state, settings, tables)
+
+
+def check_effects(state: State, settings: Settings, tables: Mapping[str, np.ndarray]) -> None:
+    """Every property is what its effect takes, and the solver knows every effect that is called for."""
+    for storage, known in (("bodies", BODY_PROPERTIES), ("shapes", SHAPE_PROPERTIES)):
+        for item in known.values():
+            name = f"{storage}.{item.name}"
+            for value in np.unique(tables[name]) if name in tables else ():
+                try:
+                    item.check(item.name, value.item())
+                except ValueError as error:
+                    raise refuse(name, str(error).partition("must be ")[2]) from None
+    try:
+        refuse_lacking(state, settings)
+    except ValueError as error:
+        raise ValueError(f"snapshot: {error}") from None
 
 
 def check_finite(name: str, table: np.ndarray) -> None:
@@ -48,11 +91,54 @@ def check_bodies(tables: Mapping[str, np.ndarray]) -> None:
     if len(tables["bodies.motions"]) != len(bodies):
         raise refuse("bodies.motions", "as long as bodies.bodies")
     living = bodies[bodies["serial"] >= 0]
-    for field, count in (("kind", len(BODY_KINDS)), ("shape_kind", len(SHAPES))):
-        if ((living[field] < 0) | (living[field] >= count)).any():
-            raise refuse("bodies.bodies", f"of {field}s from 0 to {count - 1}")
-    if (living["half_x"] <= 0).any() or (living["half_y"] < 0).any() or (living["friction"] < 0).any():
-        raise refuse("bodies.bodies", "of positive sizes and no negative friction")
+    check_choices("bodies.bodies", living, kind=len(BODY_KINDS), fixed_rotation=2)
+
+
+def check_choices(name: str, rows: np.ndarray, **counts: int) -> None:
+    """Fields that number one of so many."""
+    for field, count in counts.items():
+        if ((rows[field] < 0) | (rows[field] >= count)).any():
+            raise refuse(name, f"of {field}s from 0 to {count - 1}")
+
+
+def check_shapes(tables: Mapping[str, np.ndarray]) -> None:
+    """Shapes have serials of their own, kinds that there are, living bodies, sizes; polygons a hull of their own."""
+    check_serials("shapes", "shapes", tables)
+    check_serials("hulls", "hulls", tables)
+    shapes, hulls = tables["shapes.shapes"], tables["hulls.hulls"]
+    living = shapes[shapes["serial"] >= 0]
+    check_choices("shapes.shapes", living, kind=len(SHAPES))
+    serials = tables["bodies.bodies"]["serial"]
+    owners = living["body"]
+    if ((owners < 0) | (owners >= len(serials))).any() or (serials[owners] < 0).any():
+        raise refuse("shapes.shapes", "of living bodies")
+    for field in ("mass", "friction", "half_x", "half_y", "radius"):
+        if (living[field] < 0).any():
+            raise refuse("shapes.shapes", f"of no negative {field}")
+    for kind, fields in SIZES.items():
+        for field in fields:
+            if (living[field][living["kind"] == kind] <= 0).any():
+                raise refuse("shapes.shapes", f"of {SHAPES[kind].name} shapes with a {field} > 0")
+    check_parts(living)
+    own = living["hull"][living["kind"] == POLYGON]
+    if ((own < 0) | (own >= len(hulls))).any() or (hulls["serial"][own] < 0).any() or len(np.unique(own)) != len(own):
+        raise refuse("shapes.shapes", "of polygons with a hull each")
+    counts = hulls["count"][hulls["serial"] >= 0]
+    if ((counts < 3) | (counts > HULL_POINTS)).any():
+        raise refuse("hulls.hulls", f"of 3 to {HULL_POINTS} corners")
+
+
+def check_parts(living: np.ndarray) -> None:
+    """A piece belongs to itself or, of a chain, to an earlier piece of the same chain."""
+    by_serial = living[np.argsort(living["serial"])]
+    places = np.searchsorted(by_serial["serial"], living["part_of"])
+    firsts = by_serial[np.minimum(places, len(living) - 1)]
+    alike = (firsts["serial"] == living["part_of"]) & (firsts["part_of"] == firsts["serial"])
+    alike &= (firsts["body"] == living["body"]) & (firsts["kind"] == living["kind"])
+    alone = living["part_of"] == living["serial"]
+    later = (living["kind"] == CHAIN) & (living["part_of"] < living["serial"])
+    if not np.all(alike & (alone | later)):
+        raise refuse("shapes.shapes", "of pieces that belong together")
 
 
 def check_joints(tables: Mapping[str, np.ndarray]) -> None:
@@ -63,6 +149,17 @@ def check_joints(tables: Mapping[str, np.ndarray]) -> None:
     check_rows("joints.joints", tables, joints["body1"], joints["body2"])
 
 
+def check_fluids(tables: Mapping[str, np.ndarray]) -> None:
+    """Fluids have serials of their own, fill a rectangle, and weigh something."""
+    check_serials("fluids", "fluids", tables)
+    fluids = tables["fluids.fluids"]
+    fluids = fluids[fluids["serial"] >= 0]
+    if ((fluids["lower_x"] >= fluids["upper_x"]) | (fluids["lower_y"] >= fluids["upper_y"])).any():
+        raise refuse("fluids.fluids", "of rectangles, lower before upper")
+    if ((fluids["density"] <= 0) | (fluids["linear_drag"] < 0) | (fluids["angular_drag"] < 0)).any():
+        raise refuse("fluids.fluids", "of positive density and no negative drag")
+
+
 def check_arbiters(tables: Mapping[str, np.ndarray]) -> None:
     """Arbiters stand in ascending order, between living bodies of those serials, with at most two contacts each."""
     arbiters = tables["arbiters"]
@@ -71,10 +168,17 @@ def check_arbiters(tables: Mapping[str, np.ndarray]) -> None:
     if ((arbiters["count"] < 0) | (arbiters["count"] > 2)).any():
         raise refuse("arbiters", "of 0 to 2 contacts")
     check_rows("arbiters", tables, arbiters["body1"], arbiters["body2"])
-    serials = tables["bodies.bodies"]["serial"]
-    keys = np.stack([serials[arbiters["body1"]], serials[arbiters["body2"]]], axis=1)
-    if not np.array_equal(keys, np.stack([arbiters["serial1"], arbiters["serial2"]], axis=1)):
-        raise refuse("arbiters", "between the bodies of their serials")
+    shapes = tables["shapes.shapes"]
+    for number in "12":
+        rows = arbiters[f"shape{number}"]
+        if ((rows < 0) | (rows >= len(shapes))).any() or (shapes["serial"][rows] != arbiters[f"serial{number}"]).any():
+            raise refuse("arbiters", "between the shapes of their serials")
+        if (shapes["body"][rows] != arbiters[f"body{number}"]).any():
+            raise refuse("arbiters", "between the bodies of their shapes")
+    expected = COLLIDER_OF[shapes["kind"][arbiters["shape1"]], shapes["kind"][arbiters["shape2"]]]
+    if (arbiters["collider"] != expected).any():
+        raise refuse("arbiters", "of shapes that can meet")
+    keys = np.stack([arbiters["serial1"], arbiters["serial2"]], axis=1)
     order = np.lexsort((keys[:, 1], keys[:, 0]))
     if (np.diff(order) != 1).any() or len(np.unique(keys, axis=0)) != len(keys) or (keys[:, 0] >= keys[:, 1]).any():
         raise refuse("arbiters", "in ascending order of their serials")

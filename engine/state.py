@@ -6,30 +6,30 @@ from typing import Any
 
 import numpy as np
 
-from engine.broad_phase.all_pairs import WORD
-from engine.narrow_phase import COLLIDERS
+from engine.arbiters import ArbiterTable, follow_pairs, indices_by_collider, mix_friction
+from engine.broad_phase import BROAD_PHASES
+from engine.effects import BODY_PROPERTIES, EFFECTS, SHAPE_PROPERTIES
+from engine.effects.filters import drop_filtered
+from engine.mixing import RULES
+from engine.narrow_phase import COLLIDER_OF, COLLIDERS, TALK_COLLIDERS
+from engine.pairs import drop_impossible, drop_joined
 from engine.settings import Settings
 from engine.shapes import BOUNDS
+from engine.solvers import SOLVERS
 from engine.storage import Storage
 from engine.tables import (
     BODY,
-    STATIC,
-    arbiter_dtype,
-    contact_dtype,
+    DYNAMIC,
+    FLUID,
+    HULL,
+    KINEMATIC,
+    SHAPE,
     empty,
     motion_dtype,
+    placement_dtype,
     revolute_dtype,
     step_dtype,
 )
-
-
-class ArbiterTable:
-    """Arbiters in ascending order of (serial1, serial2), with up to two contacts each."""
-
-    def __init__(self, precision: str, capacity: int) -> None:
-        self.rows = empty(capacity, arbiter_dtype(precision))
-        self.contacts = empty((capacity, 2), contact_dtype(precision))
-        self.count = 0
 
 
 class State:
@@ -37,79 +37,176 @@ class State:
 
     def __init__(self, settings: Settings) -> None:
         precision = settings.precision
-        self.bodies = Storage({"bodies": BODY, "motions": motion_dtype(precision)})
-        self.joints = Storage({"joints": revolute_dtype(precision)})
         self.precision = precision
-        self.arbiters = ArbiterTable(precision, 0)  # of the last step
-        self.found = ArbiterTable(precision, 0)  # where the next step's grow
-        self.pairs = np.empty((0, 2), np.int64)  # of ranks that may touch
-        self.pair_count = 0
+        body_columns = {name: p.column() for name, p in BODY_PROPERTIES.items()}
+        shape_columns = {name: p.column() for name, p in SHAPE_PROPERTIES.items()}
+        self.bodies = Storage({"bodies": BODY, "motions": motion_dtype(precision)}, body_columns)
+        self.shapes = Storage({"shapes": SHAPE}, shape_columns)
+        self.hulls = Storage({"hulls": HULL})
+        self.joints = Storage({"joints": revolute_dtype(precision)})
+        self.fluids = Storage({"fluids": FLUID})
+        self.arbiters = ArbiterTable(precision, 0)
+        self.spare_arbiters = ArbiterTable(precision, 0)  # where the next change of pairs is written
         self.steps = empty(1, step_dtype(precision))
-        self.prepared_for: Settings | None = None  # what `steps` was written from
-        self.prepared_dt = 0.0
         self.step_count = 0
         self.time = 0.0  # [s]
-        self.stale = True  # bodies or joints came or went since the last refresh
+        self.last_dt = 0.0  # of the last step [s]
+        self.explosions = 0  # so far
+        self.scratch: dict[str, Any] = {}  # tables that a solver makes for itself; nothing in them lasts
+        self.forced: frozenset[str] = frozenset()  # effects whose code runs though nothing calls for them
+        self.suppressed: frozenset[str] = frozenset()  # effects whose code does not run though something does
+        self.gathered: dict[str, Any] = {}  # what effects read off the content, until it changes
+        self.diagnosed_at: int | None = None  # step count when somebody asked for diagnostics
+        self.forget_broad_phase()
+        self.stale = True  # content or settings changed since the last refresh
+        self.prepared_for: Settings | None = None
+        self.prepared_dt = self.prepared_carried = 0.0
 
-    def refresh(self) -> None:
-        """Reads off the content what the stages need: which shapes there are, who is fixed, who ignores whom."""
-        order = self.bodies.order
-        rows = self.bodies.tables["bodies"][order]
-        padded = (len(order) + WORD - 1) // WORD * WORD
-        self.fixed = (rows["kind"] == STATIC).astype(np.uint8)
-        self.bounds = np.zeros((4, len(order)), np.float32)
-        self.flags = np.zeros(padded, np.uint8)
-        kinds = {int(kind) for kind in np.unique(rows["shape_kind"])}
-        self.bounds_kernels = [BOUNDS[kind] for kind in sorted(kinds)]
-        self.colliders = [collide for pair, collide in COLLIDERS.items() if kinds.issuperset(pair)]
-        self.ignored = self._ignored_pairs()
-        self.active_joints = self.joints.tables["joints"] if self.joints.count else None
+    def forget_broad_phase(self) -> None:
+        """The next step finds all pairs anew. Which arbiters have contacts does not depend on it."""
+        self.broad_name = ""
+        self.pairs = np.empty((0, 2), np.int64)  # of rows of shapes that may touch
+
+    # --- what the content calls for -----------------------------------------------------------------------------
+
+    def active(self, settings: Settings) -> frozenset[str]:
+        """Names of the effects whose code runs."""
+        wanted = {effect.name for effect in EFFECTS if effect.because(self, settings)}
+        return frozenset((wanted | self.forced) - self.suppressed)
+
+    def refresh(self, settings: Settings) -> None:
+        """Reads off the content what the stages need: which effects, which shapes, who moves, who ignores whom."""
+        for storage in (self.bodies, self.shapes):
+            storage.drop_idle_columns()
+        self.effects = self.active(settings)
+        self.gathered = {}
+        for effect in EFFECTS:
+            if effect.name in self.forced:
+                for properties, storage in ((effect.body, self.bodies), (effect.shape, self.shapes)):
+                    for item in properties:
+                        storage.ensure(item.name)
+        self._refresh_bodies()
+        self._refresh_shapes(settings)
+        self._refresh_pairs(settings)
+        joined = "revolute joints" in self.effects
+        self.active_joints = self.joints.tables["joints"] if joined else None
+        self.forces = [e.apply for e in EFFECTS if e.apply is not None and e.name in self.effects]
         self.stale = False
 
-    def _ignored_pairs(self) -> np.ndarray | None:
-        """(P, 2) int64 serials of bodies joined without colliding, ascending; None if there are none."""
+    def column(self, effect: str, storage: Storage, name: str) -> np.ndarray | None:
+        """A column, where its effect is active."""
+        return storage.columns.get(name) if effect in self.effects else None
+
+    def _refresh_bodies(self) -> None:
+        bodies = self.bodies.tables["bodies"]
+        order = self.bodies.order
+        kinds = bodies["kind"][order]
+        self.moving = order[kinds != 0]  # rows of bodies that may have a velocity
+        weighs = self.bodies.tables["motions"]["inverse_mass"][order] > 0
+        self.dynamic = order[(kinds == DYNAMIC) & weighs]  # what has no mass feels no force
+        self.gravity_scales = self.column("gravity scale", self.bodies, "gravity_scale")
+        self.linear_damping = self.column("linear damping", self.bodies, "linear_damping")
+        self.angular_damping = self.column("angular damping", self.bodies, "angular_damping")
+
+    def _refresh_shapes(self, settings: Settings) -> None:
+        order = self.shapes.order
+        shapes = self.shapes.tables["shapes"]
+        kinds = shapes["kind"][order]
+        self.placements = _sized(self.__dict__.get("placements"), len(shapes), placement_dtype(self.precision))
+        self.ranks = np.zeros(len(shapes), np.int64)
+        self.ranks[order] = np.arange(len(order))
+        self.bounds = np.zeros((4, len(order)), np.float32)
+        self.bounds_plan = [(BOUNDS[kind], np.flatnonzero(kinds == kind)) for kind in np.unique(kinds)]
+        body_kinds = self.bodies.tables["bodies"]["kind"][shapes["body"][order]]
+        self.groups = np.where(body_kinds == DYNAMIC, 1, np.where(body_kinds == KINEMATIC, 2, 0)).astype(np.uint8)
+
+    def _refresh_pairs(self, settings: Settings) -> None:
+        shapes = self.shapes.tables["shapes"]
+        order = self.shapes.order
+        if self.broad_name != settings.broad_phase:
+            self.broad_name = settings.broad_phase
+            self.broad_phase = BROAD_PHASES[settings.broad_phase]()
+        self.broad_phase.sync(order, shapes["serial"][order], self.groups)
+        talk = SOLVERS[settings.solver].talk_clipping
+        self.colliders = TALK_COLLIDERS if talk else COLLIDERS
+        self.joined = self._joined_pairs() if "joined without colliding" in self.effects else None
+        several = len(np.unique(shapes["body"][order])) < len(order)
+        lines = bool(np.any(COLLIDER_OF[shapes["kind"][order], shapes["kind"][order]] < 0))
+        self.impossible = several or lines
+        self.pairs_are_stale = True
+
+    def _joined_pairs(self) -> np.ndarray:
+        """(P, 2) int64 serials of bodies joined without colliding, ascending."""
         joints = self.joints.tables["joints"][self.joints.order]
         joints = joints[joints["collide_connected"] == 0]
-        if len(joints) == 0:
-            return None
         serials = self.bodies.tables["bodies"]["serial"]
         pairs = np.sort(np.stack([serials[joints["body1"]], serials[joints["body2"]]], axis=1), axis=1)
         return np.unique(pairs, axis=0)
 
-    def reserve_pairs(self, count: int) -> None:
-        """Makes room for so many pairs, and as many arbiters in `found`."""
-        capacity = max(16, count + count // 2)
-        self.pairs = np.empty((capacity, 2), np.int64)
+    # --- pairs and arbiters -------------------------------------------------------------------------------------
 
-    def reserve_found(self) -> None:
-        """Makes room in `found` for an arbiter for every pair."""
-        if len(self.found.rows) < len(self.pairs):
-            self.found = ArbiterTable(self.precision, len(self.pairs))
+    def follow(self, settings: Settings) -> None:
+        """Makes the arbiters those of the pairs that the broad phase holds."""
+        self.pairs_are_stale = False
+        shapes = self.shapes.tables["shapes"]
+        pairs = np.array(self.broad_phase.pairs[: self.broad_phase.pair_count])
+        count = len(pairs)
+        if self.impossible:
+            count = drop_impossible(pairs, count, shapes, COLLIDER_OF)
+        if self.joined is not None:
+            count = drop_joined(pairs, count, shapes, self.bodies.tables["bodies"], self.joined)
+        if "filters" in self.effects:
+            columns = (self.shapes.ensure(name) for name in ("category", "mask", "group"))
+            count = drop_filtered(pairs, count, *columns)
+        old, new = self.arbiters, self.spare_arbiters
+        if len(new.rows) < count:
+            new = ArbiterTable(self.precision, max(16, count + count // 2))
+        follow_pairs(
+            pairs, count, shapes, COLLIDER_OF, old.rows, old.contacts, old.count, new.rows, new.contacts
+        )  # fmt: skip
+        new.count = count
+        self.arbiters, self.spare_arbiters = new, old
+        mix_friction(new.rows, count, shapes, RULES.index(settings.friction_mixing))
+        self.indices = indices_by_collider(new.rows, count, len(COLLIDERS))
+        self.chosen = np.empty(count, np.int64)
 
-    def drop_arbiters_of(self, serial: int) -> None:
-        """Forgets the contacts of a body that is going."""
+    def drop_arbiters(self, serials: Any) -> None:
+        """Forgets the contacts of shapes that are going."""
         table = self.arbiters
         rows = table.rows[: table.count]
-        kept = np.flatnonzero((rows["serial1"] != serial) & (rows["serial2"] != serial))
+        going = np.isin(rows["serial1"], serials) | np.isin(rows["serial2"], serials)
+        kept = np.flatnonzero(~going)
         table.rows[: len(kept)] = rows[kept]
         table.contacts[: len(kept)] = table.contacts[kept]
         table.count = len(kept)
 
+    def find_contacts_anew(self, body: int) -> None:
+        """Lets the next step recycle no contact of the body in that row."""
+        rows = self.arbiters.rows[: self.arbiters.count]
+        rows["recyclable"][(rows["body1"] == body) | (rows["body2"] == body)] = 0
+
+    # --- snapshots ----------------------------------------------------------------------------------------------
+
     def save(self) -> dict[str, np.ndarray]:
         """Copies of every table that a later step depends on."""
         table = self.arbiters
+        touching = np.flatnonzero(table.rows["count"][: table.count])
+        saved = {
+            f"{name}.{key}": rows for name, storage in self.storages().items() for key, rows in storage.save().items()
+        }
         return {
-            **{f"bodies.{name}": rows for name, rows in self.bodies.save().items()},
-            **{f"joints.{name}": rows for name, rows in self.joints.save().items()},
-            "arbiters": np.array(table.rows[: table.count]),
-            "contacts": np.array(table.contacts[: table.count]),
+            **saved,
+            "arbiters": np.array(table.rows[touching]),
+            "contacts": np.array(table.contacts[touching]),
             "step_count": np.array(self.step_count, np.int64),
             "time": np.array(self.time),
+            "last_dt": np.array(self.last_dt),
+            "explosions": np.array(self.explosions, np.int64),
         }
 
     def load(self, saved: dict[str, Any]) -> None:
         """Takes back what `save` gave."""
-        for name, storage in (("bodies", self.bodies), ("joints", self.joints)):
+        for name, storage in self.storages().items():
             prefix = name + "."
             storage.load({key.removeprefix(prefix): rows for key, rows in saved.items() if key.startswith(prefix)})
         count = len(saved["arbiters"])
@@ -119,4 +216,19 @@ class State:
         self.arbiters.count = count
         self.step_count = int(saved["step_count"])
         self.time = float(saved["time"])
+        self.last_dt = float(saved["last_dt"])
+        self.explosions = int(saved["explosions"])
+        self.forget_broad_phase()
         self.stale = True
+
+    def storages(self) -> dict[str, Storage]:
+        """What comes and goes in this world, by name."""
+        return {
+            "bodies": self.bodies, "shapes": self.shapes, "hulls": self.hulls, "joints": self.joints,
+            "fluids": self.fluids,
+        }  # fmt: skip
+
+
+def _sized(table: np.ndarray | None, count: int, dtype: np.dtype) -> np.ndarray:
+    """The table, or a new one where it is too short."""
+    return empty(count, dtype) if table is None or len(table) < count else table

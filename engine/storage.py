@@ -1,5 +1,8 @@
 """Rows that come and go: capacity growth, the order of creation, and serials that are never given twice.
 
+A column is a table that need not be there: it holds what few things have, such as restitution, and exists only while
+some thing departs from the default.
+
 A row's place may be used again; its serial may not. So a handle that remembers both knows when its row has been
 destroyed, or destroyed and given to another, or brought back by a restored snapshot.
 """
@@ -8,6 +11,7 @@ from __future__ import annotations
 
 import heapq
 from collections.abc import Mapping
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -16,10 +20,19 @@ from engine.tables import empty
 SMALLEST_CAPACITY = 16
 
 
+class Column(NamedTuple):
+    """What a column holds where nobody has said anything."""
+
+    dtype: np.dtype
+    default: float
+
+
 class Storage:
     """Parallel tables with one row a thing. The first table's dtype has the field `serial`."""
 
-    def __init__(self, dtypes: Mapping[str, np.dtype]) -> None:
+    def __init__(self, dtypes: Mapping[str, np.dtype], possible: Mapping[str, Column] | None = None) -> None:
+        self.possible = dict(possible or {})
+        self.columns: dict[str, np.ndarray] = {}
         self.tables = {name: empty(SMALLEST_CAPACITY, dtype) for name, dtype in dtypes.items()}
         self.main = next(iter(dtypes))
         self.next_serial = 0
@@ -28,6 +41,7 @@ class Storage:
     def forget(self) -> None:
         """Empties the tables; serials go on."""
         self.tables[self.main]["serial"] = -1
+        self.columns = {}
         self._order = np.empty(0, np.int64)
         self._free: list[int] = []
         self._used = 0  # rows from here on were never used
@@ -49,28 +63,67 @@ class Storage:
 
     def add(self) -> int:
         """Takes a row, zeroed but for its serial, and returns its place."""
-        if self._free:
-            row = heapq.heappop(self._free)
-        else:
-            row = self._used
-            self._used += 1
-            self._reserve(self._used)
-        for table in self.tables.values():
-            table[row] = np.zeros((), table.dtype)
-        self.tables[self.main]["serial"][row] = self.next_serial
-        self.next_serial += 1
-        self._ascending = self._ascending and row == len(self._order)
-        self._order = np.append(self._order, row)
-        return row
+        return int(self.add_many(1)[0])
+
+    def add_many(self, count: int) -> np.ndarray:
+        """Takes rows, zeroed but for their serials, and returns their places in the order of their serials."""
+        reused = [heapq.heappop(self._free) for _ in range(min(count, len(self._free)))]
+        fresh = np.arange(self._used, self._used + count - len(reused))
+        rows = np.concatenate([np.array(reused, np.int64), fresh])
+        self._used += len(fresh)
+        self._reserve(self._used)
+        self._clear(rows)
+        self.tables[self.main]["serial"][rows] = np.arange(self.next_serial, self.next_serial + count)
+        self.next_serial += count
+        self._ascending = self._ascending and np.array_equal(rows, np.arange(self.count, self.count + count))
+        self._order = np.concatenate([self._order, rows])
+        return rows
 
     def remove(self, row: int) -> None:
         """Gives a row back, with nothing left in it: what stood there may have been why it had to go."""
-        for table in self.tables.values():
-            table[row] = np.zeros((), table.dtype)
+        self._clear(np.array([row]))
         self.tables[self.main]["serial"][row] = -1
         self._order = self._order[self._order != row]
         self._ascending = False
         heapq.heappush(self._free, row)
+
+    def _clear(self, rows: np.ndarray) -> None:
+        for table in self.tables.values():
+            table[rows] = np.zeros((), table.dtype)
+        for name, values in self.columns.items():
+            values[rows] = self.possible[name].default
+
+    def get(self, name: str, row: int) -> Any:
+        """A column's value for a row, there or not."""
+        column = self.possible[name]
+        values = self.columns.get(name)
+        return column.dtype.type(column.default).item() if values is None else values[row].item()
+
+    def put(self, name: str, rows: Any, value: Any) -> None:
+        """Writes into a column, which comes into being where the value is not the default."""
+        column = self.possible[name]
+        if name not in self.columns:
+            if np.all(np.asarray(value, column.dtype) == column.default):
+                return
+            self.ensure(name)
+        self.columns[name][rows] = value
+
+    def ensure(self, name: str) -> np.ndarray:
+        """A column, made if it is not there."""
+        if name not in self.columns:
+            column = self.possible[name]
+            self.columns[name] = np.full(len(self.tables[self.main]), column.default, column.dtype)
+        return self.columns[name]
+
+    def drop_idle_columns(self) -> None:
+        """Lets go of columns in which nothing departs from the default."""
+        for name in [name for name in self.columns if not self.departing(name)]:
+            del self.columns[name]
+
+    def departing(self, name: str) -> int:
+        """How many things depart from a column's default."""
+        values = self.columns.get(name)
+        return 0 if values is None else int(np.count_nonzero(values[self._order] != self.possible[name].default))
 
     def holds(self, row: int, serial: int) -> bool:
         """Whether the thing of this serial is in this row."""
@@ -89,8 +142,10 @@ class Storage:
         return np.array(rows[: self.count]) if self.dense else rows[self._order]
 
     def save(self) -> dict[str, np.ndarray]:
-        """Copies of the rows in use, and the serial to come."""
+        """Copies of the rows in use, of columns in which something departs from the default, and the serial to come."""
         saved = {name: np.array(table[: self._used]) for name, table in self.tables.items()}
+        departing = [name for name in self.columns if self.departing(name)]
+        saved |= {name: np.array(self.columns[name][: self._used]) for name in departing}
         saved["next_serial"] = np.array(self.next_serial, np.int64)
         return saved
 
@@ -102,6 +157,9 @@ class Storage:
         self._reserve(self._used)
         for name, table in self.tables.items():
             table[: self._used] = saved[name]
+        for name in self.possible:
+            if name in saved:
+                self.put(name, slice(0, self._used), saved[name])
         serials = self.tables[self.main]["serial"][: self._used]
         rows = np.flatnonzero(serials >= 0)
         self._order = rows[np.argsort(serials[rows])]
@@ -118,4 +176,8 @@ class Storage:
             larger = empty(capacity, table.dtype)
             larger[: len(table)] = table
             self.tables[name] = larger
+        for name, values in self.columns.items():
+            longer = np.full(capacity, self.possible[name].default, values.dtype)
+            longer[: len(values)] = values
+            self.columns[name] = longer
         self.tables[self.main]["serial"][self._used :] = -1

@@ -12,27 +12,78 @@ from functools import cache
 import numba
 import numpy as np
 
-BODY_KINDS = ("static", "dynamic")
-STATIC, DYNAMIC = range(2)
+BODY_KINDS = ("static", "dynamic", "kinematic")
+STATIC, DYNAMIC, KINEMATIC = range(3)
 
 REALS: dict[str, np.dtype[np.floating]] = {"single": np.dtype(np.float32), "double": np.dtype(np.float64)}
 
 BODY = np.dtype(
     [
         ("serial", np.int64),  # number of creation, from 0, never given twice; -1: no body in this row
-        ("x", np.float64),  # position of the centre of mass [m]
+        ("x", np.float64),  # position: of the body's origin [m]
         ("y", np.float64),
         ("angle", np.float64),  # unwrapped [rad]
+        ("center_x", np.float64),  # centre of mass, in the world [m]
+        ("center_y", np.float64),
+        ("local_x", np.float64),  # centre of mass, in the body's frame [m]
+        ("local_y", np.float64),
         ("force_x", np.float64),  # set by the user, used up by the next step [N]
         ("force_y", np.float64),
         ("torque", np.float64),  # [N m]
-        ("mass", np.float64),  # [kg], infinite for a static body
-        ("inertia", np.float64),  # about the centre of mass [kg m^2], infinite for a static body
-        ("friction", np.float64),  # coefficient, >= 0
-        ("half_x", np.float64),  # box: half its width; circle: its radius [m]
-        ("half_y", np.float64),  # box: half its height; circle: 0 [m]
+        ("mass", np.float64),  # [kg], infinite for a body that no force moves
+        ("inertia", np.float64),  # about the centre of mass [kg m^2], infinite likewise
         ("kind", np.int64),  # index into BODY_KINDS
-        ("shape_kind", np.int64),  # index into SHAPE_KINDS
+        ("fixed_rotation", np.int64),  # 1: nothing turns it
+    ]
+)
+
+SHAPE = np.dtype(
+    [
+        ("serial", np.int64),  # number of creation, from 0, never given twice; -1: no shape in this row
+        ("body", np.int64),  # row of its body
+        ("kind", np.int64),  # index into SHAPE_KINDS
+        ("part_of", np.int64),  # serial of the first of the pieces that came together: one but for a chain
+        ("mass", np.float64),  # [kg]
+        ("friction", np.float64),  # coefficient, >= 0
+        ("half_x", np.float64),  # box: half its width; capsule, segment: half the way between its ends [m]
+        ("half_y", np.float64),  # box: half its height [m]
+        ("radius", np.float64),  # circle, capsule: radius; polygon: how far it is rounded [m]
+        ("local_x", np.float64),  # place of the shape's own frame in the body's frame [m]
+        ("local_y", np.float64),
+        ("local_angle", np.float64),  # [rad]
+        ("local_cosine", np.float64),  # of that angle
+        ("local_sine", np.float64),
+        ("hull", np.int64),  # polygon: row in the table of hulls; -1 otherwise
+        ("ghost1_x", np.float64),  # chain piece: the points before and after it, in its own frame [m]
+        ("ghost1_y", np.float64),
+        ("ghost2_x", np.float64),
+        ("ghost2_y", np.float64),
+    ]
+)
+"""One piece of a body's outline: a whole shape, or one segment of a chain."""
+
+HULL_POINTS = 8
+HULL = np.dtype(
+    [
+        ("serial", np.int64),  # -1: no hull in this row
+        ("count", np.int64),  # corners
+        ("x", np.float64, (HULL_POINTS,)),  # corners, counter-clockwise, in the shape's own frame [m]
+        ("y", np.float64, (HULL_POINTS,)),
+        ("nx", np.float64, (HULL_POINTS,)),  # unit outward normal of the edge from each corner to the next
+        ("ny", np.float64, (HULL_POINTS,)),
+    ]
+)
+
+FLUID = np.dtype(
+    [
+        ("serial", np.int64),  # number of creation among the fluids; -1: no fluid in this row
+        ("lower_x", np.float64),  # the rectangle that it fills [m]
+        ("lower_y", np.float64),
+        ("upper_x", np.float64),
+        ("upper_y", np.float64),
+        ("density", np.float64),  # [kg/m^2]
+        ("linear_drag", np.float64),  # of a body as dense, all under [1/s]
+        ("angular_drag", np.float64),
     ]
 )
 
@@ -87,19 +138,46 @@ def motion_dtype(precision: str) -> np.dtype:
 
 
 @cache
-def arbiter_dtype(precision: str) -> np.dtype:
-    """The contacts between two bodies: what they share."""
+def placement_dtype(precision: str) -> np.dtype:
+    """Where a shape is in the world: made afresh each step, same row as in SHAPE."""
     real = REALS[precision]
     return np.dtype(
         [
-            ("serial1", np.int64),  # serials of the bodies, serial1 < serial2: the arbiter's key and its order
+            ("x", np.float64),  # of the shape's own frame [m]
+            ("y", np.float64),
+            ("cosine", real),  # of its angle
+            ("sine", real),
+        ]
+    )
+
+
+@cache
+def arbiter_dtype(precision: str) -> np.dtype:
+    """Two shapes that are near each other, and what their contacts share. It lives as long as they are near."""
+    real = REALS[precision]
+    return np.dtype(
+        [
+            ("serial1", np.int64),  # serials of the shapes, serial1 < serial2: the arbiter's key and its order
             ("serial2", np.int64),
-            ("body1", np.int32),  # rows of the bodies
+            ("shape1", np.int32),  # rows of the shapes
+            ("shape2", np.int32),
+            ("body1", np.int32),  # rows of their bodies
             ("body2", np.int32),
+            ("collider", np.int32),  # which kind of pair: index into COLLIDERS
             ("count", np.int32),  # contacts, 0 to 2
             ("nx", real),  # unit normal, from body1 to body2
             ("ny", real),
-            ("friction", real),  # of the pair: sqrt(friction1 friction2)
+            ("friction", real),  # of the pair
+            ("rolling_impulse", real),  # accumulated [N m s]
+            ("recyclable", np.int32),  # 1: what follows is where the bodies were when the contacts were found
+            ("found_nx", real),  # the normal
+            ("found_ny", real),
+            ("apart_x", real),  # from the centre of body1 to that of body2 [m]
+            ("apart_y", real),
+            ("cosine1", real),  # of their angles
+            ("sine1", real),
+            ("cosine2", real),
+            ("sine2", real),
         ]
     )
 
@@ -112,14 +190,21 @@ def contact_dtype(precision: str) -> np.dtype:
         [
             ("x", np.float64),  # position when it was found [m]
             ("y", np.float64),
-            ("feature", np.int32),  # which edges meet, see narrow_phase/clip.py
+            ("feature", np.int32),  # which corners or edges meet, see narrow_phase/manifold_points.py
             ("r1_x", real),  # position relative to the centres of body1 and body2 [m]
             ("r1_y", real),
             ("r2_x", real),
             ("r2_y", real),
             ("separation", real),  # < 0: overlap [m]
-            ("normal_impulse", real),  # P_n, accumulated [N s]
-            ("tangent_impulse", real),  # P_t, accumulated [N s]
+            ("found", real),  # separation when the contact was found, see recycling.py [m]
+            ("found1_x", real),  # r1 and r2 likewise
+            ("found1_y", real),
+            ("found2_x", real),
+            ("found2_y", real),
+            ("normal_impulse", real),  # accumulated P_n: what the next step starts from, for a whole step [N s]
+            ("tangent_impulse", real),  # accumulated P_t [N s]
+            ("given_normal", real),  # what the last step gave in all [N s]
+            ("given_tangent", real),
             ("normal_mass", real),  # effective mass along the normal [kg]
             ("tangent_mass", real),  # and along the tangent [kg]
             ("normal_arm1", real),  # r1 x n: how an impulse along the normal turns body1 [m]
@@ -145,7 +230,7 @@ def revolute_dtype(precision: str) -> np.dtype:
             ("anchor2_x", np.float64),  # anchor in the frame of body2 [m]
             ("anchor2_y", np.float64),
             ("softness", real),  # how far it gives way [1/kg]: 0 is rigid
-            ("bias_factor", real),  # part of the separation that a step removes
+            ("bias_factor", real),  # part of the separation that a step removes; < 0: the solver's own
             ("collide_connected", np.int64),  # 1: its bodies collide with each other
             ("r1_x", real),  # anchors relative to the centres, turned into the world [m]
             ("r1_y", real),
@@ -154,10 +239,18 @@ def revolute_dtype(precision: str) -> np.dtype:
             ("mass_xx", real),  # effective mass, a symmetric matrix [kg]
             ("mass_xy", real),
             ("mass_yy", real),
-            ("bias_x", real),  # velocity that removes the separation [m/s]
+            ("bias_x", real),  # sequential_impulses: velocity that removes the separation [m/s]
             ("bias_y", real),
             ("impulse_x", real),  # accumulated, on body2 [N s]
             ("impulse_y", real),
+            ("given_x", real),  # what the last step gave body2 [N s]
+            ("given_y", real),
+            ("apart_x", real),  # soft_step: from centre to centre as the step began [m]
+            ("apart_y", real),
+            ("give", real),  # and softness in a substep [1/kg]
+            ("bias_rate", real),
+            ("mass_scale", real),
+            ("impulse_scale", real),
         ]
     )
 
@@ -178,8 +271,24 @@ def step_dtype(precision: str) -> np.dtype:
             ("accumulate_impulses", np.int64),  # the talk's three switches, 0 or 1
             ("warm_starting", np.int64),
             ("position_correction", np.int64),
+            ("margin", real),  # contacts are found where shapes are closer than this [m]
+            ("recycling", real),  # contacts are kept while bodies moved less than this; 0: never [m]
+            ("substeps", np.int64),
+            ("h", real),  # time of a substep [s]
+            ("inverse_h", real),  # [1/s]
+            ("parts", real),  # substeps, as a number of the solver's
+            ("carried", real),  # part of a stored impulse that a substep starts from
+            ("push_out_speed", real),  # [m/s]
+            ("restitution_threshold", real),  # [m/s]
+            *((name, real) for name in SOFTNESS_FIELDS),
         ]
     )
+
+
+SOFTNESS_FIELDS = tuple(
+    f"{kind}_{name}" for kind in ("contact", "static", "joint") for name in ("bias_rate", "mass_scale", "impulse_scale")
+)
+"""Softness of contacts, of contacts with what no impulse moves, and of joints: see softness.py."""
 
 
 def empty(count: int | tuple[int, ...], dtype: np.dtype) -> np.ndarray:

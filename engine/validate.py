@@ -88,6 +88,20 @@ def vector(name: str, value: Any) -> tuple[float, float]:
         raise refuse(name, value, allowed) from None
 
 
+def points(name: str, value: Any, least: int, most: int) -> tuple[tuple[float, float], ...]:
+    """From `least` to `most` points."""
+    allowed = f"{least} to {most} points (x, y) of finite numbers"
+    if isinstance(value, (str, bytes)) or not isinstance(value, Iterable):
+        raise refuse(name, value, allowed)
+    try:
+        parts = list(value)
+        if not least <= len(parts) <= most:
+            raise refuse(name, value, allowed)
+        return tuple(vector(name, part) for part in parts)
+    except (TypeError, ValueError):
+        raise refuse(name, value, allowed) from None
+
+
 def switch(name: str, value: Any) -> bool:
     """True or False."""
     if not isinstance(value, (bool, np.bool_)):
@@ -112,10 +126,11 @@ def in_range(precision: str, **values: Iterable[float]) -> None:
             raise refuse(name, shown, f"of parts of at most {largest:.3g} in {precision} precision")
 
 
-def time_step(name: str, value: Any, precision: str) -> float:
-    """A finite float >= 0 that is zero, or that the precision can hold together with its inverse."""
+def time_step(name: str, value: Any, precision: str, parts: int = 1) -> float:
+    """A finite float >= 0 that is zero, or whose parts the precision can hold together with their inverse."""
     result = non_negative(name, value)
     info = np.finfo(REALS[precision])
-    if result != 0.0 and not float(info.tiny) <= result <= float(info.max) / 4.0:
-        raise refuse(name, value, f"0 or a normal {precision} precision number")
+    if result != 0.0 and not parts * float(info.tiny) <= result <= float(info.max) / 4.0:
+        among = f", and so each of {parts} parts" if parts > 1 else ""
+        raise refuse(name, value, f"0 or a normal {precision} precision number{among}")
     return result

@@ -4,19 +4,26 @@ from __future__ import annotations
 
 import time
 import weakref
+from typing import Any
 
 import numpy as np
 
 from engine import validate
 from engine.bodies import Body, Pair
 from engine.configured import Configured
-from engine.constants import FRICTION, ITERATIONS
-from engine.creation import add_body, add_revolute
+from engine.constants import FRICTION
+from engine.creation import add_bodies, add_revolute, add_shape, checked_positions, finite_rows
 from engine.diagnostics import Diagnostics, diagnose
+from engine.effects import EffectStatus
+from engine.effects.explosion import explode
+from engine.effects.fluid import Fluid, add_fluid
 from engine.joints.handle import RevoluteJoint
+from engine.lacking import effect_statuses, refuse_lacking
 from engine.queries import rows_at
 from engine.records import Arbiter, arbiter_list, contact_records, joint_records
+from engine.removal import destroy_body, destroy_shape
 from engine.settings import Settings
+from engine.shape_handle import ShapeHandle
 from engine.shapes import Shape
 from engine.snapshot import Snapshot, state_hash
 from engine.snapshot_check import check_tables
@@ -28,32 +35,13 @@ from engine.tables import BODY_KINDS
 class World(Configured):
     """Bodies, joints and arbiters in a plane, y up, in SI units.
 
-    gravity: [m/s^2]. solver: a name from engine.SOLVERS. iterations: passes over all constraints in a step.
-    precision: "single" or "double", of the solver's own numbers; positions are doubles in either. broad_phase: a name
-    from engine.BROAD_PHASES. The three switches are the talk's. All but the precision can be changed at any time.
+    Settings by name, such as World(gravity=(0, -10), solver="soft_step", substeps=4, iterations=1,
+    precision="single"): engine/settings.py lists all with their defaults. Each is an attribute, too, and all but the
+    precision can be changed at any time. Positions are doubles in either precision.
     """
 
-    def __init__(
-        self,
-        gravity: Pair = (0.0, -10.0),
-        solver: str = "sequential_impulses",
-        iterations: int = ITERATIONS,
-        precision: str = "single",
-        broad_phase: str = "all_pairs",
-        accumulate_impulses: bool = True,
-        warm_starting: bool = True,
-        position_correction: bool = True,
-    ) -> None:
-        self._settings = Settings(
-            gravity=validate.vector("gravity", gravity),
-            solver=solver,
-            iterations=iterations,
-            precision=precision,
-            broad_phase=broad_phase,
-            accumulate_impulses=accumulate_impulses,
-            warm_starting=warm_starting,
-            position_correction=position_correction,
-        )
+    def __init__(self, **settings: Any) -> None:
+        self._settings = Settings.from_dict(settings)
         self._state = State(self._settings)
         self._handles: weakref.WeakValueDictionary[int, Body] = weakref.WeakValueDictionary()
         self.stage_times = {name: 0.0 for name, _ in STAGES}  # of the last step [s]
@@ -66,12 +54,10 @@ class World(Configured):
         dt = 0 changes nothing. ValueError if dt is negative or not finite; StepError, naming body and stage, if the
         state stops being finite: the world is then not usable, restore a snapshot.
         """
-        dt = validate.time_step("dt", dt, self.precision)
+        dt = validate.time_step("dt", dt, self.precision, self.substeps)
         if dt == 0.0:
             return
         state, settings = self._state, self._settings
-        if state.stale:
-            state.refresh()
         prepare_step(state, settings, dt)
         before = time.perf_counter()
         for name, stage in STAGES:
@@ -81,6 +67,7 @@ class World(Configured):
             before = now
         state.step_count += 1
         state.time += dt
+        state.last_dt = dt
 
     @property
     def step_count(self) -> int:
@@ -96,7 +83,7 @@ class World(Configured):
 
     def create_body(
         self,
-        shape: Shape,
+        shape: Shape | None = None,
         *,
         position: Pair = (0.0, 0.0),
         angle: float = 0.0,
@@ -106,18 +93,64 @@ class World(Configured):
         friction: float = FRICTION,
         velocity: Pair = (0.0, 0.0),
         angular_velocity: float = 0.0,
+        fixed_rotation: bool = False,
+        offset: Pair = (0.0, 0.0),
+        shape_angle: float = 0.0,
+        **properties: Any,
     ) -> Body:
-        """A new body of a Box or a Circle.
+        """A new body, with a first shape unless that is left out: Body.add_shape gives it more.
 
-        position: of its centre [m]; angle [rad]; kind: "dynamic" or "static"; mass [kg], or density [kg/m^2], 1 if
-        neither is given; friction: coefficient >= 0; velocity [m/s]; angular_velocity [rad/s].
+        position: of its origin [m]; angle [rad]; kind: "dynamic", "kinematic" (moves as it will) or "static"; velocity
+        [m/s] of its centre of mass; angular_velocity [rad/s]. Of the shape: mass [kg], or density [kg/m^2], 1 if
+        neither is given; friction: coefficient >= 0; offset [m] and shape_angle [rad]: its place in the body's frame.
+        properties: what effects bring, of the body (linear_damping, gravity_scale, ...) or of its shape (restitution,
+        rolling_resistance, ...): engine/effects lists them.
         """
-        body = add_body(
-            self, shape, position, angle, kind, mass, density, friction, velocity, angular_velocity
+        x, y = validate.vector("position", position)
+        angle = validate.number("angle", angle)
+        vx, vy = validate.vector("velocity", velocity)
+        w = validate.number("angular_velocity", angular_velocity)
+        (body,) = add_bodies(
+            self, shape, np.array([(x, y)]), np.array([angle]), kind, mass, density, friction, np.array([(vx, vy)]),
+            np.array([w]), fixed_rotation, offset, shape_angle, properties,
         )  # fmt: skip
         self._handles[body.serial] = body
-        self._state.stale = True
+        self._content_changed()
         return body
+
+    def create_bodies(
+        self,
+        shape: Shape,
+        *,
+        positions: np.ndarray,
+        angles: np.ndarray | float = 0.0,
+        kind: str = "dynamic",
+        mass: float | None = None,
+        density: float | None = None,
+        friction: float = FRICTION,
+        velocities: np.ndarray | Pair = (0.0, 0.0),
+        angular_velocities: np.ndarray | float = 0.0,
+        fixed_rotation: bool = False,
+        offset: Pair = (0.0, 0.0),
+        shape_angle: float = 0.0,
+        **properties: Any,
+    ) -> list[Body]:
+        """Many bodies of one shape at once: positions (N, 2) [m]; angles [rad], velocities [m/s] and angular_velocities
+        [rad/s] one for each or one for all. The rest as in create_body.
+        """
+        places = checked_positions(positions)
+        count = len(places)
+        if shape is None:
+            raise validate.refuse("shape", shape, "a shape")
+        bodies = add_bodies(
+            self, shape, places, finite_rows("angles", angles, count, 0), kind, mass, density, friction,
+            finite_rows("velocities", velocities, count, 2),
+            finite_rows("angular_velocities", angular_velocities, count, 0), fixed_rotation, offset, shape_angle,
+            properties,
+        )  # fmt: skip
+        self._handles.update({body.serial: body for body in bodies})
+        self._content_changed()
+        return bodies
 
     def create_joint_revolute(
         self,
@@ -132,25 +165,49 @@ class World(Configured):
         """Pins two bodies together at a point of the world.
 
         anchor [m]; softness [1/kg]: 0 is rigid, 1/(dt (d + dt k)) a spring k [N/m] with damper d [N s/m]; bias_factor:
-        part of the separation that a step removes, Box2D Lite's 0.2 if left out, dt k/(d + dt k) for that spring.
-        collide_connected: whether the two collide with each other.
+        part of the separation that a step removes, dt k/(d + dt k) for that spring, the solver's own if left out: 0.2
+        in sequential_impulses, that of the joint stiffness in soft_step. collide_connected: whether the two collide.
         """
         joint = add_revolute(self, body1, body2, anchor, softness, bias_factor, collide_connected)
-        self._state.stale = True
+        self._content_changed()
         return joint
 
+    def create_fluid(
+        self, lower: Pair, upper: Pair, *, density: float, linear_drag: float = 0.0, angular_drag: float = 0.0
+    ) -> Fluid:
+        """A fluid in the rectangle from lower to upper [m], which carries what is in it and holds it back.
+
+        density [kg/m^2], as of shapes; linear_drag, angular_drag: rates at which a body as dense as the fluid, all
+        under, loses speed and spin [1/s].
+        """
+        fluid = add_fluid(self, lower, upper, density, linear_drag, angular_drag)
+        self._content_changed()
+        return fluid
+
+    def explode(self, position: Pair, *, radius: float, falloff: float = 0.0, impulse: float) -> None:
+        """Pushes everything within `radius` [m] away from a point at once, with `impulse` per metre of what faces it
+        [N s/m]; beyond, less and less until nothing is left `falloff` [m] further out. Negative: towards the point.
+        """
+        explode(self, position, radius, falloff, impulse)
+
+    def _add_shape(self, body: Body, *arguments: Any) -> ShapeHandle:
+        handle = add_shape(self, body, *arguments)
+        self._content_changed()
+        return handle
+
+    def _destroy_shape(self, handle: ShapeHandle) -> None:
+        destroy_shape(self._state, handle)
+        self._content_changed()
+
     def _destroy_body(self, body: Body) -> None:
-        state = self._state
-        joints = state.joints.tables["joints"]
-        for row in state.joints.order:
-            if body._row in (joints["body1"][row], joints["body2"][row]):
-                state.joints.remove(int(row))
-        state.drop_arbiters_of(body.serial)
-        state.bodies.remove(body._row)
-        state.stale = True
+        destroy_body(self._state, body)
+        self._content_changed()
 
     def _destroy_joint(self, row: int) -> None:
         self._state.joints.remove(row)
+        self._content_changed()
+
+    def _content_changed(self) -> None:
         self._state.stale = True
 
     # --- what is there ------------------------------------------------------------------------------------------
@@ -166,6 +223,16 @@ class World(Configured):
         storage = self._state.joints
         serials = storage.tables["joints"]["serial"]
         return [RevoluteJoint(self, int(row), int(serials[row])) for row in storage.order]
+
+    @property
+    def fluids(self) -> list[Fluid]:
+        """Living fluids in the order of creation."""
+        storage = self._state.fluids
+        return [Fluid(self, int(row), int(storage.tables["fluids"]["serial"][row])) for row in storage.order]
+
+    def fluid_records(self) -> np.ndarray:
+        """(F,) FLUID: all fluids as one table, in the order of creation: a copy."""
+        return self._state.fluids.gather("fluids")
 
     @property
     def body_count(self) -> int:
@@ -187,6 +254,29 @@ class World(Configured):
     def joint_records(self) -> np.ndarray:
         """(J,) JOINT_RECORD: all joints as one table, in the order of creation."""
         return joint_records(self._state)
+
+    def shape_records(self) -> np.ndarray:
+        """(S,) SHAPE: all pieces of all shapes as one table, in the order of creation: a copy."""
+        return self._state.shapes.gather("shapes")
+
+    def hull_records(self) -> np.ndarray:
+        """(H,) HULL: corners of polygons by row, as `hull` of shape_records says: a copy."""
+        return np.array(self._state.hulls.tables["hulls"])
+
+    @property
+    def bounds(self) -> np.ndarray:
+        """(S, 4) float32 [m]: lower x and y, upper x and y of the pieces' boxes, as the last step's broad phase had.
+
+        In the order of creation; empty before the first step and after content changed.
+        """
+        if self._state.stale or not self._state.broad_name or self._state.step_count == 0:
+            return np.empty((0, 4), np.float32)
+        return self._state.broad_phase.fat_bounds()
+
+    @property
+    def effects(self) -> tuple[EffectStatus, ...]:
+        """Every effect that the engine has, and what in this world calls for it."""
+        return effect_statuses(self._state, self._settings)
 
     def body_records(self) -> np.ndarray:
         """(N,) BODY: what describes the bodies as one table, in the order of creation: a copy."""
@@ -258,6 +348,16 @@ class World(Configured):
         return state_hash(self._state)
 
     # --- inside -------------------------------------------------------------------------------------------------
+
+    def _shapes_of(self, row: int) -> list[ShapeHandle]:
+        storage = self._state.shapes
+        shapes = storage.tables["shapes"]
+        own = storage.order[shapes["body"][storage.order] == row]
+        firsts = shapes["part_of"][own]
+        return [ShapeHandle(self, own[firsts == serial], int(serial)) for serial in np.unique(firsts)]
+
+    def _accept(self, settings: Settings) -> None:
+        refuse_lacking(self._state, settings)
 
     def _body_in_row(self, row: int) -> Body:
         serial = int(self._state.bodies.tables["bodies"]["serial"][row])

@@ -50,3 +50,39 @@ def find_pairs(bounds, fixed, flags, pairs):
                             pairs[count, 1] = j
                         count += 1
     return count
+
+
+class AllPairs:
+    """The talk's broad phase as the step uses it; see broad_phase/__init__.py."""
+
+    def __init__(self) -> None:
+        self.pairs = np.empty((0, 2), np.int64)
+        self.pair_count = 0
+        self._rows = np.empty(0, np.int64)
+
+    def sync(self, rows: np.ndarray, serials: np.ndarray, groups: np.ndarray) -> None:
+        """Takes up shapes."""
+        self._rows = np.array(rows)
+        self._fixed = (groups != 1).astype(np.uint8)
+        self._flags = np.zeros((len(rows) + WORD - 1) // WORD * WORD, np.uint8)
+        self._ranks = np.empty((16, 2), np.int64)
+        self._count = -1
+
+    def update(self, bounds: np.ndarray) -> bool:
+        """Compares all with all."""
+        self._bounds = bounds
+        ranks = np.empty_like(self._ranks)
+        count = find_pairs(bounds, self._fixed, self._flags, ranks)
+        if count > len(ranks):
+            ranks = np.empty((count + count // 2, 2), np.int64)
+            count = find_pairs(bounds, self._fixed, self._flags, ranks)
+        same = count == self._count and np.array_equal(ranks[:count], self._ranks[:count])
+        self._ranks, self._count = ranks, count
+        if not same:
+            self.pairs = self._rows[ranks[:count]]
+            self.pair_count = count
+        return not same
+
+    def fat_bounds(self) -> np.ndarray:
+        """(S, 4) float32: the boxes that were compared."""
+        return np.ascontiguousarray(self._bounds.T)

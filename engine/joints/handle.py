@@ -52,7 +52,7 @@ class RevoluteJoint:
     @property
     def impulse(self) -> Vec2:
         """What the last step gave body2 through the joint, and body1 the other way [N s]."""
-        return Vec2(float(self._joint["impulse_x"]), float(self._joint["impulse_y"]))
+        return Vec2(float(self._joint["given_x"]), float(self._joint["given_y"]))
 
     @property
     def anchors(self) -> tuple[Vec2, Vec2]:
@@ -74,13 +74,15 @@ class RevoluteJoint:
         self._joint["softness"] = softness
 
     @property
-    def bias_factor(self) -> float:
-        """Part of the separation that a step removes, 0 to 1."""
-        return float(self._joint["bias_factor"])
+    def bias_factor(self) -> float | None:
+        """Part of the separation that a step removes, 0 to 1; None: the solver's own."""
+        factor = float(self._joint["bias_factor"])
+        return None if factor < 0.0 else factor
 
     @bias_factor.setter
-    def bias_factor(self, value: float) -> None:
-        self._joint["bias_factor"] = validate.between("bias_factor", value, 0.0, 1.0)
+    def bias_factor(self, value: float | None) -> None:
+        factor = -1.0 if value is None else validate.between("bias_factor", value, 0.0, 1.0)
+        self._joint["bias_factor"] = factor
 
     @property
     def collide_connected(self) -> bool:

@@ -7,9 +7,10 @@ K P = bias - dv - softness P, K being the 2x2 matrix that turns an impulse into 
 
 from __future__ import annotations
 
+from engine.constants import JOINT_BIAS_FACTOR
 from engine.impulses import pull, push
 from engine.jit import kernel
-from engine.lanes import const
+from engine.lanes import const, over
 from engine.origin import center_of, origin_of
 from engine.vec2 import Vec2, rotate, spin
 
@@ -23,7 +24,7 @@ def write_effective_mass(joint, motion1, motion2, r1, r2):
     k_xx = free + i1 * r1.y * r1.y + i2 * r2.y * r2.y + joint.softness
     k_xy = -(i1 * r1.x * r1.y) - i2 * r2.x * r2.y
     k_yy = free + i1 * r1.x * r1.x + i2 * r2.x * r2.x + joint.softness
-    inverse_determinant = const(1.0, k_xx) / (k_xx * k_yy - k_xy * k_xy)
+    inverse_determinant = over(const(1.0, k_xx), k_xx * k_yy - k_xy * k_xy)
     joint.mass_xx = inverse_determinant * k_yy
     joint.mass_xy = -inverse_determinant * k_xy
     joint.mass_yy = inverse_determinant * k_xx
@@ -41,8 +42,10 @@ def prepare(joints, order, bodies, motions, step):
         lane = motion1.vx
         q1 = Vec2(motion1.cosine, motion1.sine)
         q2 = Vec2(motion2.cosine, motion2.sine)
-        r1 = rotate(q1, Vec2(const(joint.anchor1_x, lane), const(joint.anchor1_y, lane)))
-        r2 = rotate(q2, Vec2(const(joint.anchor2_x, lane), const(joint.anchor2_y, lane)))
+        arm1 = Vec2(const(joint.anchor1_x - body1.local_x, lane), const(joint.anchor1_y - body1.local_y, lane))
+        arm2 = Vec2(const(joint.anchor2_x - body2.local_x, lane), const(joint.anchor2_y - body2.local_y, lane))
+        r1 = rotate(q1, arm1)
+        r2 = rotate(q2, arm2)
         joint.r1_x = r1.x
         joint.r1_y = r1.y
         joint.r2_x = r2.x
@@ -51,7 +54,10 @@ def prepare(joints, order, bodies, motions, step):
 
         rate = const(0.0, lane)
         if step.position_correction != 0:
-            rate = joint.bias_factor * step.inverse_dt
+            factor = joint.bias_factor
+            if factor < const(0.0, lane):
+                factor = const(JOINT_BIAS_FACTOR, lane)
+            rate = factor * step.inverse_dt
         origin = origin_of(body1, lane)
         apart = (center_of(body2, origin, lane) + r2) - (center_of(body1, origin, lane) + r1)
         joint.bias_x = -rate * apart.x

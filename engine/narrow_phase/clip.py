@@ -1,4 +1,4 @@
-"""Clipping a segment, with a memory of which edges made each end: the talk's clipping, used by box_box.
+"""Clipping a segment, with a memory of which edges made each end: the talk's clipping, used by box_box_talk.
 
 A feature is what recognises a contact in the next step: four edge numbers (0: none, 1 to 4: an edge of a box,
 counter-clockwise from its top), the edges of the reference box (in, out) and of the incident box (in, out) that meet

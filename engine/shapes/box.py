@@ -5,9 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from engine.constants import BOUNDS_MARGIN, BOUNDS_MARGIN_RELATIVE
+from engine.constants import BOUNDS_MARGIN_RELATIVE
 from engine.jit import kernel
 from engine.lanes import absolute
+from engine.shapes.piece import Lamina, Piece, rectangle
 from engine.validate import positive
 
 BOX = 0
@@ -15,7 +16,7 @@ BOX = 0
 
 @dataclass(frozen=True)
 class Box:
-    """A rectangle of full `width` and `height` [m] about the body's centre."""
+    """A rectangle of full `width` and `height` [m] about its own origin."""
 
     width: float
     height: float
@@ -36,10 +37,13 @@ class Box:
         """Moment of inertia about the centre, m (w^2 + h^2) / 12 [kg m^2]."""
         return mass * (self.width * self.width + self.height * self.height) / 12.0
 
-    @property
-    def half_extents(self) -> tuple[float, float]:
-        """What the body table keeps of it [m]."""
-        return 0.5 * self.width, 0.5 * self.height
+    def lamina(self) -> Lamina:
+        """The plate that it is."""
+        return rectangle(self.width, self.height)
+
+    def pieces(self) -> tuple[Piece, ...]:
+        """Its rows in the table of shapes."""
+        return (Piece({"half_x": 0.5 * self.width, "half_y": 0.5 * self.height}),)
 
     @property
     def extent(self) -> tuple[float, float]:
@@ -47,9 +51,9 @@ class Box:
         return self.width, self.height
 
     @staticmethod
-    def sizes(half_x: Any, half_y: Any) -> tuple[Any, Any]:
-        """What describes it to the outside, numbers or arrays: full width and height [m]."""
-        return 2.0 * half_x, 2.0 * half_y
+    def sizes(rows: Any) -> tuple[Any, Any]:
+        """What describes pieces to the outside, from their rows: full width and height [m]."""
+        return 2.0 * rows["half_x"], 2.0 * rows["half_y"]
 
     @classmethod
     def filling(cls, width: float, height: float) -> Box:
@@ -57,30 +61,30 @@ class Box:
         return cls(width, height)
 
     @staticmethod
-    def from_half_extents(half_x: float, half_y: float) -> Box:
-        return Box(2.0 * half_x, 2.0 * half_y)
+    def from_rows(rows: Any, hulls: Any) -> Box:
+        """The shape whose pieces these rows are."""
+        return Box(2.0 * float(rows[0]["half_x"]), 2.0 * float(rows[0]["half_y"]))
 
     @staticmethod
-    def contains(x: Any, y: Any, half_x: Any, half_y: Any) -> Any:
-        """Whether a point in the body's frame lies in the box: numbers, or arrays of them [m]."""
-        return (abs(x) <= half_x) & (abs(y) <= half_y)
+    def contains(x: Any, y: Any, rows: Any, hulls: Any) -> Any:
+        """Whether points in the pieces' own frames lie in them: arrays [m]."""
+        return (abs(x) <= rows["half_x"]) & (abs(y) <= rows["half_y"])
 
 
 @kernel
-def box_bounds(order, bodies, motions, bounds):
-    """Writes the bounding boxes of all box bodies: bounds (4, N) float32, lower x and y, upper x and y, in `order`."""
-    for rank in range(len(order)):
+def box_bounds(ranks, order, shapes, hulls, placements, margin, bounds):
+    """Writes the bounding boxes of boxes: bounds (4, S) float32, lower x and y, upper x and y, at their `ranks`."""
+    for rank in ranks:
         row = order[rank]
-        body = bodies[row]
-        if body.shape_kind == BOX:
-            motion = motions[row]
-            c = absolute(motion.cosine)
-            s = absolute(motion.sine)
-            reach_x = c * body.half_x + s * body.half_y
-            reach_y = s * body.half_x + c * body.half_y
-            reach_x += BOUNDS_MARGIN + BOUNDS_MARGIN_RELATIVE * (absolute(body.x) + reach_x)
-            reach_y += BOUNDS_MARGIN + BOUNDS_MARGIN_RELATIVE * (absolute(body.y) + reach_y)
-            bounds[0, rank] = body.x - reach_x
-            bounds[1, rank] = body.y - reach_y
-            bounds[2, rank] = body.x + reach_x
-            bounds[3, rank] = body.y + reach_y
+        shape = shapes[row]
+        place = placements[row]
+        c = absolute(place.cosine)
+        s = absolute(place.sine)
+        reach_x = c * shape.half_x + s * shape.half_y
+        reach_y = s * shape.half_x + c * shape.half_y
+        reach_x += margin + BOUNDS_MARGIN_RELATIVE * (absolute(place.x) + reach_x)
+        reach_y += margin + BOUNDS_MARGIN_RELATIVE * (absolute(place.y) + reach_y)
+        bounds[0, rank] = place.x - reach_x
+        bounds[1, rank] = place.y - reach_y
+        bounds[2, rank] = place.x + reach_x
+        bounds[3, rank] = place.y + reach_y

@@ -6,9 +6,10 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
-from engine.constants import BOUNDS_MARGIN, BOUNDS_MARGIN_RELATIVE
+from engine.constants import BOUNDS_MARGIN_RELATIVE
 from engine.jit import kernel
 from engine.lanes import absolute
+from engine.shapes.piece import Lamina, Piece, disc
 from engine.validate import positive
 
 CIRCLE = 1
@@ -16,7 +17,7 @@ CIRCLE = 1
 
 @dataclass(frozen=True)
 class Circle:
-    """A disc of `radius` [m] about the body's centre."""
+    """A disc of `radius` [m] about its own origin."""
 
     radius: float
 
@@ -35,10 +36,13 @@ class Circle:
         """Moment of inertia about the centre, m r^2 / 2 [kg m^2]."""
         return 0.5 * mass * self.radius * self.radius
 
-    @property
-    def half_extents(self) -> tuple[float, float]:
-        """What the body table keeps of it [m]."""
-        return self.radius, 0.0
+    def lamina(self) -> Lamina:
+        """The plate that it is."""
+        return disc(self.radius)
+
+    def pieces(self) -> tuple[Piece, ...]:
+        """Its rows in the table of shapes."""
+        return (Piece({"radius": self.radius}),)
 
     @property
     def extent(self) -> tuple[float, float]:
@@ -46,9 +50,9 @@ class Circle:
         return 2.0 * self.radius, 2.0 * self.radius
 
     @staticmethod
-    def sizes(half_x: Any, half_y: Any) -> tuple[Any, Any]:
-        """What describes it to the outside, numbers or arrays: radius, and 0 [m]."""
-        return half_x, half_y
+    def sizes(rows: Any) -> tuple[Any, Any]:
+        """What describes pieces to the outside, from their rows: radius, and 0 [m]."""
+        return rows["radius"], 0.0
 
     @classmethod
     def filling(cls, width: float, height: float) -> Circle:
@@ -56,25 +60,26 @@ class Circle:
         return cls(0.5 * width)
 
     @staticmethod
-    def from_half_extents(half_x: float, half_y: float) -> Circle:
-        return Circle(half_x)
+    def from_rows(rows: Any, hulls: Any) -> Circle:
+        """The shape whose pieces these rows are."""
+        return Circle(float(rows[0]["radius"]))
 
     @staticmethod
-    def contains(x: Any, y: Any, half_x: Any, half_y: Any) -> Any:
-        """Whether a point in the body's frame lies in the disc: numbers, or arrays of them [m]."""
-        return x * x + y * y <= half_x * half_x
+    def contains(x: Any, y: Any, rows: Any, hulls: Any) -> Any:
+        """Whether points in the pieces' own frames lie in them: arrays [m]."""
+        return x * x + y * y <= rows["radius"] * rows["radius"]
 
 
 @kernel
-def circle_bounds(order, bodies, motions, bounds):
-    """Writes the bounding boxes of all circle bodies: bounds (4, N) float32, as box_bounds does."""
-    for rank in range(len(order)):
-        body = bodies[order[rank]]
-        if body.shape_kind == CIRCLE:
-            radius = body.half_x
-            reach_x = radius + BOUNDS_MARGIN + BOUNDS_MARGIN_RELATIVE * (absolute(body.x) + radius)
-            reach_y = radius + BOUNDS_MARGIN + BOUNDS_MARGIN_RELATIVE * (absolute(body.y) + radius)
-            bounds[0, rank] = body.x - reach_x
-            bounds[1, rank] = body.y - reach_y
-            bounds[2, rank] = body.x + reach_x
-            bounds[3, rank] = body.y + reach_y
+def circle_bounds(ranks, order, shapes, hulls, placements, margin, bounds):
+    """Writes the bounding boxes of circles, as box_bounds does."""
+    for rank in ranks:
+        row = order[rank]
+        place = placements[row]
+        radius = shapes[row].radius
+        reach_x = radius + margin + BOUNDS_MARGIN_RELATIVE * (absolute(place.x) + radius)
+        reach_y = radius + margin + BOUNDS_MARGIN_RELATIVE * (absolute(place.y) + radius)
+        bounds[0, rank] = place.x - reach_x
+        bounds[1, rank] = place.y - reach_y
+        bounds[2, rank] = place.x + reach_x
+        bounds[3, rank] = place.y + reach_y

@@ -1,12 +1,10 @@
-"""Solvers: one file a method, one line here.
-
-A solver is `solve(bodies, motions, arbiters, contacts, count, joints, joint_order, steps)`: it changes the
-velocities in `motions` so that the constraints hold, and keeps the impulses that it needed for it. `joints` is None
-where a world has none, `steps` is one row of step_dtype.
-"""
+"""Solvers: one file or folder a method, one line here; solver.py says what a solver is."""
 
 from __future__ import annotations
 
-from engine.solvers import sequential_impulses
+from engine.solvers import sequential_impulses, soft_step
+from engine.solvers.solver import Solver
 
-SOLVERS = {"sequential_impulses": sequential_impulses.solve}
+SOLVERS: dict[str, Solver] = {
+    solver.name: solver for solver in (soft_step.SOFT_STEP, sequential_impulses.SEQUENTIAL_IMPULSES)
+}

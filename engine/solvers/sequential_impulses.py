@@ -8,11 +8,19 @@ overlap is pushed out by a bias velocity (position correction). Source: E. Catto
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
+from engine import integrate
 from engine.impulses import pull, push
 from engine.jit import kernel
 from engine.joints import revolute
-from engine.lanes import clamp, const, maximum, minimum
+from engine.lanes import clamp, const, maximum, minimum, over
+from engine.solvers.solver import Solver
 from engine.vec2 import Vec2, cross, dot, right_of
+
+if TYPE_CHECKING:
+    from engine.settings import Settings
+    from engine.state import State
 
 
 @kernel
@@ -26,7 +34,7 @@ def effective_mass(motion1, motion2, r1, r2, direction):
     turning1 = motion1.inverse_inertia * (dot(r1, r1) - along1 * along1)
     turning2 = motion2.inverse_inertia * (dot(r2, r2) - along2 * along2)
     inverse = motion1.inverse_mass + motion2.inverse_mass + (turning1 + turning2)
-    return const(1.0, inverse) / inverse
+    return over(const(1.0, inverse), inverse)
 
 
 @kernel
@@ -117,7 +125,7 @@ def solve_contacts(arbiters, contacts, count, motions, accumulate):
 
 
 @kernel
-def solve(bodies, motions, arbiters, contacts, count, joints, joint_order, steps):
+def solve_all(bodies, motions, arbiters, contacts, count, joints, joint_order, steps):
     """Prepares all constraints, then passes over contacts and joints `iterations` times."""
     step = steps[0]
     prepare_contacts(arbiters, contacts, count, motions, step)
@@ -127,3 +135,50 @@ def solve(bodies, motions, arbiters, contacts, count, joints, joint_order, steps
         solve_contacts(arbiters, contacts, count, motions, step.accumulate_impulses != 0)
         if joints is not None:
             revolute.solve(joints, joint_order, motions)
+    for index in range(count):
+        for i in range(arbiters[index].count):
+            contacts[index, i].given_normal = contacts[index, i].normal_impulse
+            contacts[index, i].given_tangent = contacts[index, i].tangent_impulse
+    if joints is not None:
+        for rank in range(len(joint_order)):
+            joint = joints[joint_order[rank]]
+            joint.given_x = joint.impulse_x
+            joint.given_y = joint.impulse_y
+
+
+def apply_forces(state: State, settings: Settings) -> int:
+    """Stage 2 of the talk."""
+    bodies, motions = state.bodies.tables["bodies"], state.bodies.tables["motions"]
+    gravity = state.steps if "gravity" in state.effects else None
+    return int(
+        integrate.apply_forces(
+            state.dynamic, bodies, motions, gravity, state.gravity_scales, state.linear_damping,
+            state.angular_damping, state.steps,
+        )
+    )  # fmt: skip
+
+
+def solve(state: State, settings: Settings) -> None:
+    """Stage 3 of the talk."""
+    bodies, motions = state.bodies.tables["bodies"], state.bodies.tables["motions"]
+    table = state.arbiters
+    solve_all(
+        bodies, motions, table.rows, table.contacts, table.count, state.active_joints, state.joints.order, state.steps
+    )
+
+
+def update_positions(state: State, settings: Settings) -> int:
+    """Stage 4 of the talk."""
+    bodies, motions = state.bodies.tables["bodies"], state.bodies.tables["motions"]
+    return int(integrate.update_positions(state.bodies.order, bodies, motions, state.steps))
+
+
+SEQUENTIAL_IMPULSES = Solver(
+    "sequential_impulses",
+    apply_forces,
+    solve,
+    update_positions,
+    iterations=10,
+    talk_clipping=True,
+    lacks=("restitution", "rolling resistance", "conveyor"),
+)

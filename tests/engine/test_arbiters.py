@@ -7,74 +7,117 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from engine import Box, Circle, World
-from engine.arbiters import match_arbiters
-from engine.tables import arbiter_dtype, contact_dtype, empty, step_dtype
-from tests.engine.worlds import DT, busy, floor, run
+from engine import SOLVERS, Box, Capsule, Circle, World
+from engine.arbiters import follow_pairs, indices_by_collider
+from engine.narrow_phase import COLLIDER_OF, COLLIDERS
+from engine.narrow_phase.manifold import Places, write_manifold
+from engine.narrow_phase.manifold_points import Manifold
+from engine.tables import SHAPE, arbiter_dtype, contact_dtype, empty, motion_dtype
+from engine.vec2 import Vec2
+from tests.engine.worlds import DT, busy, floor, gathering, run
 
 pytestmark = pytest.mark.kernel
 
-pair = st.tuples(st.integers(0, 5), st.integers(6, 9))
-contacts = st.lists(st.integers(1, 4), max_size=2, unique=True)
-tables = st.dictionaries(pair, contacts, max_size=8)
+ROW_OF = (3, 9, 0, 5, 7, 1, 4, 2, 8, 6)  # of the shapes of serials 0 to 9
+pair_sets = st.sets(st.tuples(st.integers(0, 5), st.integers(6, 9)), max_size=8)
+features = st.lists(st.integers(1, 4), max_size=2, unique=True)
 
 
-def fill(content: dict, first_impulse: float) -> tuple[np.ndarray, np.ndarray, int]:
-    """Tables of arbiters in ascending order: {(serial1, serial2): features}."""
-    arbiters = empty(len(content) + 1, arbiter_dtype("double"))
-    points = empty((len(content) + 1, 2), contact_dtype("double"))
-    points["normal_impulse"] = points["tangent_impulse"] = -99.0  # of an older step
-    for index, (key, features) in enumerate(sorted(content.items())):
-        arbiters["serial1"][index], arbiters["serial2"][index] = key
-        arbiters["count"][index] = len(features)
-        for i, feature in enumerate(features):
-            points["feature"][index, i] = feature
-            points["x"][index, i] = 100 * index + i
-            if first_impulse:
-                points["normal_impulse"][index, i] = first_impulse + 10 * index + i
-                points["tangent_impulse"][index, i] = -first_impulse - 10 * index - i
-    return arbiters, points, len(content)
+def a_table(keys: list[tuple[int, int]], mark: float) -> tuple[np.ndarray, np.ndarray]:
+    """Arbiters of these serials with marks all over, and one row more than that."""
+    arbiters = empty(len(keys) + 1, arbiter_dtype("double"))
+    points = empty((len(keys) + 1, 2), contact_dtype("double"))
+    for field in points.dtype.names or ():
+        points[field] = mark + np.arange(2 * len(points)).reshape(-1, 2)
+    for field in arbiters.dtype.names or ():
+        arbiters[field] = mark + np.arange(len(arbiters))
+    arbiters["serial1"][:-1], arbiters["serial2"][:-1] = np.array(keys, np.int64).reshape(-1, 2).T
+    return arbiters, points
 
 
 @settings(max_examples=200, deadline=None)
-@given(before=tables, after=tables, warm_starting=st.booleans())
-def test_impulses_are_carried_by_pair_and_feature(before: dict, after: dict, warm_starting: bool) -> None:
-    before = {key: features for key, features in before.items() if features}
-    old, old_points, old_count = fill(before, 1000.0)
-    new, points, total = fill(after, 0.0)
-    known = {
-        (old["serial1"][index], old["serial2"][index], old_points["feature"][index, i]): (
-            old_points["normal_impulse"][index, i],
-            old_points["tangent_impulse"][index, i],
-        )
-        for index in range(old_count)
-        for i in range(old["count"][index])
-    }
-    steps = empty(1, step_dtype("double"))
-    steps["warm_starting"] = warm_starting
-    kept = match_arbiters(old, old_points, old_count, new, points, total, steps)
-    expected = sorted((key, features) for key, features in after.items() if features)
-    assert kept == len(expected)
-    for index, (key, features) in enumerate(expected):
-        assert (new["serial1"][index], new["serial2"][index], new["count"][index]) == (*key, len(features))
-        for i, feature in enumerate(features):
-            assert points["feature"][index, i] == feature
-            impulses = known.get((*key, feature), (0.0, 0.0)) if warm_starting else (0.0, 0.0)
-            assert (points["normal_impulse"][index, i], points["tangent_impulse"][index, i]) == impulses
-            assert points["x"][index, i] % 100 == i, "a contact moves with all of its row"
+@given(before=pair_sets, after=pair_sets)
+def test_arbiters_live_as_long_as_their_pairs(before: set, after: set) -> None:
+    old_keys, keys = sorted(before), sorted(after)
+    old, old_points = a_table(old_keys, 1000.0)
+    new, points = a_table(keys, 5.0)
+    shapes = empty(10, SHAPE)
+    shapes["serial"][list(ROW_OF)] = np.arange(10)
+    shapes["body"] = 20 + np.arange(10)
+    shapes["kind"] = np.arange(10) % 3
+    pairs = np.array([(ROW_OF[a], ROW_OF[b]) for a, b in keys], np.int64).reshape(-1, 2)
+    follow_pairs(pairs, len(keys), shapes, COLLIDER_OF, old, old_points, len(old_keys), new, points)
+    for index, key in enumerate(keys):
+        if key in before:
+            place = old_keys.index(key)
+            assert new[index].tobytes() == old[place].tobytes(), "it keeps all that it has"
+            assert points[index].tobytes() == old_points[place].tobytes()
+        else:
+            row1, row2 = ROW_OF[key[0]], ROW_OF[key[1]]
+            assert (new["serial1"][index], new["serial2"][index]) == key
+            assert (new["shape1"][index], new["shape2"][index]) == (row1, row2)
+            assert (new["body1"][index], new["body2"][index]) == (20 + row1, 20 + row2)
+            assert new["collider"][index] == COLLIDER_OF[row1 % 3, row2 % 3]
+            assert new["count"][index] == new["recyclable"][index] == new["rolling_impulse"][index] == 0
 
 
-def test_arbiters_stand_in_the_order_of_creation() -> None:
-    world = busy()
-    run(world, 90)
+def manifold_of(found: list[int]) -> Manifold:
+    """Contacts with these features."""
+    first, second = (*found, 0, 0)[:2]
+    up = Vec2(0.0, 1.0)
+    return Manifold(len(found), up, Vec2(0.5, 1.0), -0.1, first, Vec2(-0.5, 1.0), -0.2, second)
+
+
+@settings(max_examples=200, deadline=None)
+@given(before=features, after=features, warm_starting=st.booleans())
+def test_impulses_are_carried_by_feature(before: list[int], after: list[int], warm_starting: bool) -> None:
+    arbiters, points = empty(3, arbiter_dtype("double")), empty((3, 2), contact_dtype("double"))
+    points["normal_impulse"] = points["tangent_impulse"] = -99.0  # of an older step
+    points["feature"] = 1
+    arbiters["count"][1], arbiters["body2"][1], arbiters["rolling_impulse"][1] = len(before), 1, 7.0
+    known = {}
+    for i, feature in enumerate(before):
+        points["feature"][1, i] = feature
+        points["normal_impulse"][1, i], points["tangent_impulse"][1, i] = known[feature] = (100.0 + i, -200.0 - i)
+    center = Vec2(0.0, 0.0)
+    places = Places(Vec2(10.0, 20.0), center, center, center, Vec2(0.0, 2.0))
+    write_manifold(1, arbiters, points, places, manifold_of(after), empty(2, motion_dtype("double")), warm_starting)
+    assert arbiters["count"][1] == len(after)
+    goes_on = warm_starting and before and after
+    assert arbiters["rolling_impulse"][1] == (7.0 if goes_on else 0.0)
+    assert arbiters["recyclable"][1] == bool(after)
+    for i, feature in enumerate(after):
+        impulses = known.get(feature, (0.0, 0.0)) if warm_starting else (0.0, 0.0)
+        assert (points["normal_impulse"][1, i], points["tangent_impulse"][1, i]) == impulses
+        assert points["feature"][1, i] == feature
+        assert (points["x"][1, i], points["y"][1, i]) == (10.5 - i, 21.0)
+        assert (points["r1_x"][1, i], points["r1_y"][1, i]) == (0.5 - i, 1.0)
+        assert (points["r2_x"][1, i], points["r2_y"][1, i]) == (0.5 - i, -1.0)
+        assert points["separation"][1, i] == (-0.1, -0.2)[i]
+    assert (points["normal_impulse"][[0, 2]] == -99.0).all(), "no other arbiter is touched"
+
+
+def test_every_collider_gets_its_own() -> None:
+    state = run(gathering(), 20)._state
+    kinds = state.arbiters.rows["collider"][: state.arbiters.count]
+    found = indices_by_collider(state.arbiters.rows, state.arbiters.count, len(COLLIDERS))
+    assert sorted(np.concatenate(found).tolist()) == list(range(state.arbiters.count))
+    assert all((kinds[own] == kind).all() and (np.diff(own) > 0).all() for kind, own in enumerate(found))
+    assert sum(len(own) > 0 for own in found) > 4
+
+
+@pytest.mark.parametrize("solver", SOLVERS)
+def test_arbiters_stand_in_the_order_of_creation(solver: str) -> None:
+    world = run(busy(solver=solver), 90)
     keys = [(arbiter.body1.serial, arbiter.body2.serial) for arbiter in world.arbiters]
     assert keys == sorted(keys)
     assert all(first < second for first, second in keys)
     assert len(keys) >= 3
 
 
-def test_order_of_creation_holds_where_rows_are_used_again() -> None:
-    world = World()
+@pytest.mark.parametrize("solver", SOLVERS)
+def test_order_of_creation_holds_where_rows_are_used_again(solver: str) -> None:
+    world = World(solver=solver)
     bodies = [world.create_body(Box(1, 1), position=(0.5 * k, 0.1 * k)) for k in range(6)]
     bodies[1].destroy()
     bodies[4].destroy()
@@ -90,8 +133,9 @@ def test_order_of_creation_holds_where_rows_are_used_again() -> None:
         assert normal.x * (x2 - x1) + normal.y * (y2 - y1) > 0
 
 
-def test_a_contact_that_parts_forgets_its_impulse() -> None:
-    world = World(precision="double")
+@pytest.mark.parametrize("solver", SOLVERS)
+def test_a_contact_that_parts_forgets_its_impulse(solver: str) -> None:
+    world = World(precision="double", solver=solver)
     floor(world)
     box = world.create_body(Box(1, 1), position=(0, 0.495))
     run(world, 30)
@@ -99,9 +143,10 @@ def test_a_contact_that_parts_forgets_its_impulse() -> None:
     box.position, box.velocity = (0, 3), (0, 0)
     world.step(DT)
     assert len(world.arbiters) == 0
-    box.position, box.velocity = (0, 0.495), (0, 0)
-    world.gravity = (0, 0)
+    box.position, box.velocity, box.angle, box.angular_velocity = (0, 0.495), (0, 0), 0, 0
+    world.set(gravity=(0, 0), position_correction=False)
     world.step(DT)
+    assert len(world.contact_records()) == 2
     assert not world.contact_records()["normal_impulse"].any()
 
 
@@ -113,3 +158,16 @@ def test_many_pairs_at_once() -> None:
     world.step(DT)
     assert len(world.arbiters) == 30 * 29 // 2
     assert len(world.contact_records()) == 435
+
+
+def test_two_shapes_of_one_body_are_two_arbiters() -> None:
+    world = World(gravity=(0, 0))
+    floor(world)
+    body = world.create_body(Box(0.5, 1), position=(-1, 0.49))
+    body.add_shape(Capsule(0.5, 0.1), offset=(2, -0.4))
+    world.step(DT)
+    assert [(a.body1.serial, a.body2.serial, len(a.contacts)) for a in world.arbiters] == [(0, 1, 2)] * 2
+    body.shapes[0].destroy()
+    assert [len(arbiter.contacts) for arbiter in world.arbiters] == [2], "gone at once"
+    world.step(DT)
+    assert len(world.arbiters) == 1

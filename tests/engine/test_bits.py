@@ -11,12 +11,18 @@ from pathlib import Path
 import pytest
 
 import engine
+from engine.narrow_phase import COLLIDERS, TALK_COLLIDERS
+from engine.shapes import BOUNDS
 from tests.engine import tiny_worlds
 
 ROOT = Path(engine.__file__).parents[1]
 
-# Kernels that differ by whether a table is there: "joints or None".
-TABLE_OR_NONE = {"engine.solvers.sequential_impulses.solve": 2}
+# Kernels that differ by whether a table is there, such as "joints or None": how many such patterns the worlds make.
+PATTERNS = {
+    "engine.solvers.sequential_impulses.solve_all": 2,  # with joints and without
+    "engine.integrate.apply_forces": 3,  # gravity; with its scale and both kinds of damping; nothing
+    "engine.solvers.soft_step.substeps.run_substeps": 5,  # these three, joints, and what the talk's solver lacks
+}
 
 
 @pytest.fixture(scope="module")
@@ -42,7 +48,7 @@ def reports() -> dict[bool, dict]:
     return found
 
 
-@pytest.mark.parametrize("name", tiny_worlds.variants())
+@pytest.mark.parametrize("name", tiny_worlds.cases())
 def test_same_bits_with_and_without_compilation(reports: dict[bool, dict], name: str) -> None:
     plain, compiled = reports[False]["worlds"][name], reports[True]["worlds"][name]
     assert len(plain) == len(compiled) == tiny_worlds.STEPS
@@ -56,13 +62,24 @@ def test_sine_and_cosine_have_the_same_bits(reports: dict[bool, dict]) -> None:
 
 
 def test_every_world_is_another(reports: dict[bool, dict]) -> None:
-    assert len({rows[-1]["hash"] for rows in reports[True]["worlds"].values()}) == len(tiny_worlds.variants())
+    assert len({rows[-1]["hash"] for rows in reports[True]["worlds"].values()}) == len(tiny_worlds.cases())
 
 
 def test_signature_budget(reports: dict[bool, dict]) -> None:
     # one signature a precision, for each pattern of absent tables; more would be a trap like dt=1 beside dt=1.0
     counts = reports[True]["signatures"]
-    assert counts["engine.solvers.sequential_impulses.solve"] == 4
     assert counts["engine.integrate.update_positions"] == 2
-    too_many = {name: count for name, count in counts.items() if count > 2 * TABLE_OR_NONE.get(name, 1)}
+    for name, patterns in PATTERNS.items():
+        assert counts[name] == 2 * patterns, name
+    # what run_substeps calls is compiled along with it, and counted where it was not found on disk
+    inside = {name: max(PATTERNS.values()) for name in counts if name.startswith("engine.solvers.soft_step.")}
+    own = {name: count for name, count in counts.items() if not name.startswith(("engine.lanes.", "engine.vec2."))}
+    too_many = {name: count for name, count in own.items() if count > 2 * (inside | PATTERNS).get(name, 1)}
     assert not too_many, too_many
+
+
+def test_every_collider_and_every_way_of_bounding_was_run(reports: dict[bool, dict]) -> None:
+    counts = reports[True]["signatures"]
+    kernels = [*COLLIDERS, *TALK_COLLIDERS, *BOUNDS]
+    names = {f"{kernel.py_func.__module__}.{kernel.py_func.__name__}" for kernel in kernels}
+    assert {name for name in names if counts[name] == 2} == names

@@ -61,6 +61,48 @@ def test_mass_from_density(shape, area) -> None:
     assert body.inverse_inertia == 1 / shape.inertia(7)
 
 
+def test_position_is_the_origins_and_velocity_the_centres() -> None:
+    world = World(precision="double", gravity=(0, 0))
+    body = world.create_body(Box(1, 1), position=(3, 4), angle=math.pi / 2, offset=(2, 0), velocity=(1, 0),
+                             angular_velocity=2)  # fmt: skip
+    assert tuple(body.position) == (3, 4)
+    assert tuple(body.center) == pytest.approx((3, 6), rel=1e-15)
+    assert tuple(body.velocity) == (1, 0)
+    assert tuple(body.velocity_at(body.center)) == (1, 0)
+    assert tuple(body.velocity_at((3, 4))) == pytest.approx((1 + 2 * 2, 0), abs=1e-12)
+    body.position = (0, 0)
+    assert tuple(body.center) == pytest.approx((0, 2), abs=1e-15)
+    body.angle = 0.0
+    assert tuple(body.center) == (2, 0)
+    body.apply_impulse((0, 3))  # at the centre: does not turn it
+    assert body.angular_velocity == 2
+    body.apply_force((0, 5), (0, 0))
+    assert body.torque == -2 * 5
+
+
+def test_only_dynamic_bodies_weigh_and_only_static_ones_stay() -> None:
+    for kind in ("dynamic", "kinematic", "static"):
+        world = World(gravity=(0, 0))
+        body = world.create_body(Box(1, 1), kind=kind)
+        assert body.kind == kind
+        assert (body.inverse_mass > 0) == (kind == "dynamic")
+        if kind != "static":
+            body.velocity, body.angular_velocity = (1, 0), 0.5
+            world.step(1.0)
+            assert (body.position.x, body.angle) == (1.0, 0.5)
+
+
+def test_properties_are_numbers_of_their_own() -> None:
+    world, body = a_body()
+    other = world.create_body(Circle(1))
+    for name, value in {"linear_damping": 0.5, "angular_damping": 2.0, "gravity_scale": -1.5}.items():
+        default = getattr(other, name)
+        setattr(body, name, np.float32(value))
+        assert getattr(body, name) == value
+        assert type(getattr(body, name)) is float
+        assert getattr(other, name) == default
+
+
 def test_impulse_off_centre_turns() -> None:
     _, body = a_body()
     body.apply_impulse((8, -4), point=(3 + 0.5, -1 + 2))

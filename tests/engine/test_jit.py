@@ -262,3 +262,62 @@ def test_options_are_numbas_and_its_setting_is_put_back() -> None:
 
 def _reciprocal(x: float) -> float:
     return 1.0 / x
+
+
+RACING = {
+    "kernels.py": "from engine.jit import kernel\n\n\n@kernel\ndef f(x):\n    return x[0] + x[1]\n",
+    # has noted that its code is in a file, but not written that file yet, while the other does all that it has to
+    "slow.py": """
+        import sys
+        import numpy as np
+        from kernels import f
+
+        save = f._cache._cache_file._save_data
+
+        def late(name, data):
+            print("noted", flush=True)
+            sys.stdin.readline()
+            save(name, data)
+
+        f._cache._cache_file._save_data = late
+        f(np.array([1, 2], np.float64))
+        """,
+    "quick.py": """
+        import subprocess, sys
+        import numpy as np
+        from kernels import f
+
+        load = f._cache._cache_file._load_index
+
+        def empty():
+            found = load()
+            other.append(subprocess.Popen([sys.executable, "slow.py"], stdin=-1, stdout=-1, text=True))
+            other[0].stdout.readline()
+            f._cache._cache_file._load_index = load
+            return found
+
+        other = []
+        f(np.array([1, 2], np.int64))  # makes the folder
+        f._cache._cache_file._load_index = empty
+        f(np.array([1, 2], np.float32))
+        other[0].communicate("go on")
+        """,
+    "after.py": """
+        import numpy as np
+        from kernels import f
+
+        print(f(np.array([1, 2], np.float32)), f(np.array([1, 2], np.float64)))
+        """,
+}
+
+
+def test_two_processes_that_compile_at_the_same_time_do_not_mix_their_code(tmp_path: Path) -> None:
+    write(tmp_path, {name: dedent(text) for name, text in RACING.items()})
+    environment = {**os.environ, "PYTHONPATH": f"{ROOT}:{tmp_path}"}
+    environment.pop("NUMBA_CACHE_DIR", None)
+    for program in ("quick.py", "after.py"):
+        result = subprocess.run(
+            [sys.executable, program], cwd=tmp_path, env=environment, capture_output=True, text=True, check=False
+        )
+        assert result.returncode == 0, result.stderr
+    assert result.stdout.split() == ["3.0", "3.0"]

@@ -7,15 +7,18 @@ import math
 import numpy as np
 import pytest
 
-from engine import CONTACT_RECORD, JOINT_RECORD, Box, World
-from tests.engine.worlds import DT, PRECISIONS, busy, run
+from engine import CONTACT_RECORD, JOINT_RECORD, SHAPE_KINDS, SOLVERS, Box, World
+from engine.tables import SHAPE
+from tests.engine.worlds import DT, POINTS, PRECISIONS, busy, gathering, run
 
 pytestmark = pytest.mark.kernel
 
 
+@pytest.mark.parametrize("make", [busy, gathering])
+@pytest.mark.parametrize("solver", SOLVERS)
 @pytest.mark.parametrize("precision", PRECISIONS)
-def test_arbiters_and_contact_records_agree(precision: str) -> None:
-    world = run(busy(precision), 45)
+def test_arbiters_and_contact_records_agree(precision: str, solver: str, make) -> None:
+    world = run(make(precision, solver=solver), 45)
     records = world.contact_records()
     assert records.dtype == CONTACT_RECORD
     assert len(records) >= 4
@@ -28,6 +31,56 @@ def test_arbiters_and_contact_records_agree(precision: str) -> None:
     assert [tuple(record) for record in records.tolist()] == listed
     for record in records:
         assert math.hypot(record["nx"], record["ny"]) == pytest.approx(1.0, abs=1e-6)
+
+
+def test_shape_records_tell_every_piece() -> None:
+    world = gathering()
+    records = world.shape_records()
+    assert records.dtype == SHAPE
+    kinds = [SHAPE_KINDS[kind] for kind in records["kind"]]
+    assert kinds[:5] == ["chain"] * 4 + ["segment"]
+    assert set(kinds) == set(SHAPE_KINDS)
+    rows = world._state.bodies.tables["bodies"]["serial"][records["body"]]
+    assert [int(serial) for serial in rows] == [
+        shape.body.serial for body in world.bodies for shape in body.shapes for _ in shape.rows
+    ]
+    hulls = world.hull_records()
+    for record in records[[kind == "polygon" for kind in kinds]]:
+        hull = hulls[record["hull"]]
+        assert hull["count"] == len(POINTS)
+        assert list(zip(hull["x"][:5].tolist(), hull["y"][:5].tolist(), strict=True)) == list(POINTS)
+        ends = np.roll(np.array(POINTS), -1, axis=0)
+        for k, (a, b) in enumerate(zip(POINTS, ends, strict=True)):
+            normal = np.array([hull["nx"][k], hull["ny"][k]])
+            assert normal @ normal == pytest.approx(1.0, rel=1e-14)
+            assert normal @ (b - a) == pytest.approx(0.0, abs=1e-15)
+            assert normal @ np.array(a) > 0, "outwards"
+    records["mass"] = 99.0
+    hulls["count"] = 3
+    assert world.shape_records()["mass"].max() < 5
+    assert world.hull_records()["count"].max() == 5
+
+
+def test_bounds_are_those_of_the_last_step() -> None:
+    world = gathering(broad_phase="all_pairs")
+    assert world.bounds.shape == (0, 4)
+    world.step(DT)
+    bounds = world.bounds
+    assert bounds.shape == (len(world.shape_records()), 4)
+    assert bounds.dtype == np.float32
+    assert (bounds[:, :2] < bounds[:, 2:]).all()
+    for body in world.bodies[1:]:
+        row = next(k for k, shape in enumerate(world.shape_records()) if shape["serial"] == body.shapes[0].serial)
+        x, y = body.shapes[0].body.position
+        assert bounds[row, 0] - 0.5 < x < bounds[row, 2] + 0.5
+        assert bounds[row, 1] - 0.5 < y < bounds[row, 3] + 0.5
+    bounds[...] = 0
+    assert world.bounds.any()
+    world.broad_phase = "dynamic_tree"
+    world.step(DT)
+    assert (world.bounds[:, 2:] - world.bounds[:, :2]).min() > 0
+    world.create_body(Box(1, 1))
+    assert world.bounds.shape == (0, 4), "content changed"
 
 
 def test_records_are_copies() -> None:
@@ -44,9 +97,10 @@ def test_records_are_copies() -> None:
     assert (records["normal_impulse"] == 5.0).all()
 
 
+@pytest.mark.parametrize("solver", SOLVERS)
 @pytest.mark.parametrize("precision", PRECISIONS)
-def test_joint_records_follow_the_bodies(precision: str) -> None:
-    world = World(gravity=(0, 0), precision=precision)
+def test_joint_records_follow_the_bodies(precision: str, solver: str) -> None:
+    world = World(gravity=(0, 0), precision=precision, solver=solver)
     a = world.create_body(Box(1, 1), position=(1, 2), angle=0.3)
     b = world.create_body(Box(1, 1), position=(-4, 1), angle=-2)
     joint = world.create_joint_revolute(b, a, anchor=(0.5, 0.75))
@@ -65,8 +119,9 @@ def test_joint_records_follow_the_bodies(precision: str) -> None:
     assert (record["impulse_x"], record["impulse_y"]) == tuple(joint.impulse) != (0, 0)
 
 
-def test_contacts_are_those_that_the_step_began_with() -> None:
-    world = World(precision="double")
+@pytest.mark.parametrize("solver", SOLVERS)
+def test_contacts_are_those_that_the_step_began_with(solver: str) -> None:
+    world = World(precision="double", solver=solver)
     world.create_body(Box(10, 1), kind="static")
     world.create_body(Box(1, 1), position=(0, 0.9999))
     assert world.arbiters == []

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from engine import STAGES, Box, Circle, StepError, World
+from engine import SOLVERS, STAGES, Box, Circle, StepError, World
 from tests.engine.worlds import DT, PRECISIONS, busy, floor, run
 
 pytestmark = pytest.mark.kernel
@@ -15,8 +15,9 @@ pytestmark = pytest.mark.kernel
 
 def test_the_talks_order() -> None:
     names = [name for name, _ in STAGES]
-    assert names.index("broad phase") < names.index("narrow phase") < names.index("arbiters")
+    assert names.index("broad phase") < names.index("narrow phase") < names.index("apply forces")
     assert names.index("apply forces") < names.index("solve constraints") < names.index("update positions")
+    assert names.index("broad phase") < names.index("arbiters"), "which come and go with the pairs"
 
 
 def break_forces(world: World) -> int:
@@ -36,21 +37,28 @@ def break_solver(world: World) -> int:
 
 @pytest.mark.parametrize("precision", PRECISIONS)
 @pytest.mark.parametrize(
-    ("damage", "stage"), [(break_forces, "apply forces"), (break_solver, "solve constraints")]
-)  # fmt: skip
-def test_the_message_names_body_and_stage(damage, stage: str, precision: str) -> None:
-    world = run(busy(precision), 5)
+    ("damage", "stage", "solver"),
+    [
+        (break_forces, "apply forces", "sequential_impulses"),
+        (break_solver, "solve constraints", "sequential_impulses"),
+        (break_forces, "solve constraints", "soft_step"),  # where forces act in substeps
+        (break_solver, "solve constraints", "soft_step"),
+    ],
+)
+def test_the_message_names_body_and_stage(damage, stage: str, solver: str, precision: str) -> None:
+    world = run(busy(precision, solver=solver), 5)
     good = world.snapshot()
     serial = damage(world)
     with pytest.raises(StepError, match=rf"^step 6, stage '{stage}': body {serial} is no longer finite: position \("):
         world.step(DT)
     world.restore(good)
     run(world, 20)
-    assert world.state_hash() == run(busy(precision), 25).state_hash()
+    assert world.state_hash() == run(busy(precision, solver=solver), 25).state_hash()
 
 
-def test_positions_that_overflow_are_named() -> None:
-    world = World(gravity=(0, 0), precision="double")
+@pytest.mark.parametrize("solver", SOLVERS)
+def test_positions_that_overflow_are_named(solver: str) -> None:
+    world = World(gravity=(0, 0), precision="double", solver=solver)
     world.create_body(Circle(0.5), position=(0, 50))
     body = world.create_body(Circle(0.5), position=(1.7e308, 0), velocity=(1e308, 0))
     with pytest.raises(StepError, match=rf"stage 'update positions': body {body.serial} .*position \(inf, 0\)"):
@@ -79,8 +87,9 @@ def test_a_broken_step_is_an_arithmetic_error() -> None:
     assert issubclass(StepError, ArithmeticError)
 
 
-def test_a_spin_too_fast_is_named() -> None:
-    world = World(gravity=(0, 0), precision="double")
+@pytest.mark.parametrize("solver", SOLVERS)
+def test_a_spin_too_fast_is_named(solver: str) -> None:
+    world = World(gravity=(0, 0), precision="double", solver=solver)
     body = world.create_body(Box(1, 1), mass=1e-3)
     body.torque = 1e308
     with pytest.raises(StepError, match=r"angular velocity inf"):

@@ -7,17 +7,21 @@ import numpy as np
 import pytest
 
 from engine import tables
+from engine.solvers.soft_step import tables as soft
 from engine.tables import REALS, empty
 
 DTYPES = {
     "body": tables.BODY,
+    "shape": tables.SHAPE,
+    "hull": tables.HULL,
     "contact record": tables.CONTACT_RECORD,
     "joint record": tables.JOINT_RECORD,
     **{
         f"{make.__name__}, {precision}": make(precision)
         for precision in REALS
-        for make in (tables.motion_dtype, tables.arbiter_dtype, tables.contact_dtype, tables.revolute_dtype,
-                     tables.step_dtype)
+        for make in (tables.motion_dtype, tables.placement_dtype, tables.arbiter_dtype, tables.contact_dtype,
+                     tables.revolute_dtype, tables.step_dtype, soft.mover_dtype, soft.constraint_dtype,
+                     soft.friction_dtype, soft.belt_dtype, soft.rolling_dtype, soft.restitution_dtype)
     },
 }  # fmt: skip
 
@@ -39,8 +43,8 @@ def test_tables_have_no_padding(name: str) -> None:
 
 @pytest.mark.parametrize("precision", REALS)
 def test_a_motion_is_eight_numbers(precision: str) -> None:
-    dtype = tables.motion_dtype(precision)
-    assert [dtype[name] for name in dtype.names or ()] == [REALS[precision]] * 8
+    for dtype in (tables.motion_dtype(precision), soft.mover_dtype(precision)):
+        assert [dtype[name] for name in dtype.names or ()] == [REALS[precision]] * 8
 
 
 def test_empty_tables_are_zeros_that_both_modes_can_read() -> None:

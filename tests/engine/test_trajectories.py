@@ -9,6 +9,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from engine import BROAD_PHASES
 from tests.engine.trajectories import NAMES, build, load, row
 
 LENGTH = 1e-8  # m and rad
@@ -17,10 +18,11 @@ IMPULSE = 1e-7  # of the step's largest
 NEGLIGIBLE = 1e-9  # N s: where even the largest joint impulse is less, it is rounding
 
 
+@pytest.mark.parametrize("broad_phase", BROAD_PHASES)
 @pytest.mark.parametrize("name", NAMES)
-def test_trajectory_is_box2d_lites(name: str) -> None:
+def test_trajectory_is_box2d_lites(name: str, broad_phase: str) -> None:
     reference = load(name)
-    world = build(reference.start)
+    world = build(reference.start, broad_phase=broad_phase)
     steps = len(reference.trajectory) - 1
     contacts = [reference.contacts[reference.contacts[:, 0] == step] for step in range(steps + 1)]
     assert np.abs(row(world) - reference.trajectory[0]).max() == 0.0

@@ -8,8 +8,8 @@ from hypothesis import settings
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, invariant, precondition, rule
 
-from engine import BROAD_PHASES, STAGES, Box, Circle, World
-from tests.engine.worlds import DT, PRECISIONS, busy, fingerprint, floor, run, tables_of
+from engine import BROAD_PHASES, SOLVERS, STAGES, Box, Circle, Polygon, World
+from tests.engine.worlds import DT, POINTS, PRECISIONS, busy, fingerprint, floor, gathering, run, tables_of
 
 COLUMNS = {
     "positions": "position",
@@ -22,10 +22,11 @@ COLUMNS = {
 # --- a step of nothing, and nothing to step ---------------------------------------------------------------------------
 
 
+@pytest.mark.parametrize("solver", SOLVERS)
 @pytest.mark.parametrize("precision", PRECISIONS)
 @pytest.mark.parametrize("zero", [0, 0.0, -0.0, np.float32(0)])
-def test_a_step_of_zero_changes_nothing(precision: str, zero: float) -> None:
-    world = run(busy(precision), 50)
+def test_a_step_of_zero_changes_nothing(precision: str, zero: float, solver: str) -> None:
+    world = run(busy(precision, solver=solver), 50)
     body = world.bodies[1]
     body.force, body.torque = (1, 2), 3
     before, contacts = fingerprint(world), world.contact_records()
@@ -42,6 +43,20 @@ def test_an_empty_world_steps() -> None:
     assert world.positions.shape == world.velocities.shape == (0, 2)
     assert world.angles.shape == world.angular_velocities.shape == (0,)
     assert len(world.contact_records()) == len(world.joint_records()) == len(world.body_records()) == 0
+    assert len(world.shape_records()) == 0
+    assert (world.hull_records()["serial"] == -1).all()
+    assert world.bounds.shape == (0, 4)
+
+
+@pytest.mark.parametrize("solver", SOLVERS)
+def test_a_body_without_shapes_moves_and_meets_nobody(solver: str) -> None:
+    world = World(gravity=(0, 0), solver=solver)
+    floor(world)
+    bare = world.create_body(position=(0, 1), velocity=(0, -3), angular_velocity=1)
+    run(world, 60)
+    assert tuple(bare.position) == pytest.approx((0, -2), abs=1e-5)
+    assert (bare.mass, bare.shapes, world.arbiters) == (0, [], [])
+    assert repr(bare).startswith("<Body 1: dynamic without a shape at (0, -2")
 
 
 def test_time_and_steps_are_counted() -> None:
@@ -159,14 +174,16 @@ def test_rows_are_used_again_and_the_order_stays_that_of_creation() -> None:
     assert world.find_body(-1) is None
 
 
+@pytest.mark.parametrize("solver", SOLVERS)
 @pytest.mark.parametrize("precision", PRECISIONS)
-def test_a_world_that_lost_bodies_is_the_world_that_never_had_them(precision: str) -> None:
+def test_a_world_that_lost_bodies_is_the_world_that_never_had_them(precision: str, solver: str) -> None:
     def fill(world: World, extra: bool) -> World:
         passing = []
 
         def maybe() -> None:
             if extra:
-                passing.append(world.create_body(Box(1, 1), position=(0.1 * len(passing), 0.5)))
+                shape = Polygon(POINTS) if len(passing) % 3 else Box(1, 1)
+                passing.append(world.create_body(shape, position=(0.1 * len(passing), 0.5), restitution=restitution))
 
         maybe()
         ground = floor(world)
@@ -182,9 +199,11 @@ def test_a_world_that_lost_bodies_is_the_world_that_never_had_them(precision: st
         world.create_joint_revolute(b, ground, anchor=(2, 3))
         c = world.create_body(Box(0.5, 2), position=(-1, 3))
         world.create_joint_revolute(a, c, anchor=(0, 2), collide_connected=False)
+        world.create_body(Polygon(POINTS, 0.1), position=(2, 1))
         return world
 
-    plain, reused = World(precision=precision), World(precision=precision)
+    restitution = 0.5 if solver == "soft_step" else 0.0
+    plain, reused = World(precision=precision, solver=solver), World(precision=precision, solver=solver)
     fill(plain, False)
     fill(reused, True)
     reused.warm_starting = plain.warm_starting = False  # the first step alone may not remember the ones before
@@ -206,6 +225,7 @@ class ComingAndGoing(RuleBasedStateMachine):
         self.world = World()
         self.bodies: list = []
         self.joints: list = []
+        self.shapes: list = []
         self.gone: list = []
 
     @rule(x=st.floats(-3, 3), y=st.floats(-3, 3), circle=st.booleans(), static=st.booleans())
@@ -214,6 +234,21 @@ class ComingAndGoing(RuleBasedStateMachine):
             Circle(0.5) if circle else Box(1, 1), position=(x, y), kind="static" if static else "dynamic"
         )
         self.bodies.append(body)
+        self.shapes += body.shapes
+
+    @precondition(lambda self: self.bodies)
+    @rule(data=st.data(), polygon=st.booleans())
+    def add_shape(self, data: st.DataObject, polygon: bool) -> None:
+        body = data.draw(st.sampled_from(self.bodies))
+        shape = Polygon(POINTS) if polygon else Box(0.5, 0.5)
+        self.shapes.append(body.add_shape(shape, offset=(0.5, 0), angle=0.3))
+
+    @precondition(lambda self: self.shapes)
+    @rule(data=st.data())
+    def remove_shape(self, data: st.DataObject) -> None:
+        shape = self.shapes.pop(data.draw(st.integers(0, len(self.shapes) - 1)))
+        shape.destroy()
+        self.gone.append(shape)
 
     @precondition(lambda self: len(self.bodies) > 1)
     @rule(data=st.data(), collide=st.booleans())
@@ -229,9 +264,11 @@ class ComingAndGoing(RuleBasedStateMachine):
     def destroy(self, data: st.DataObject) -> None:
         body = self.bodies.pop(data.draw(st.integers(0, len(self.bodies) - 1)))
         lost = [joint for joint in self.joints if body in (joint.body1, joint.body2)]
+        lost_shapes = body.shapes
+        self.shapes = [shape for shape in self.shapes if shape not in lost_shapes]
         self.joints = [joint for joint in self.joints if joint not in lost]
         body.destroy()
-        self.gone += [body, *lost]
+        self.gone += [body, *lost, *lost_shapes]
 
     @precondition(lambda self: self.joints)
     @rule(data=st.data())
@@ -250,7 +287,10 @@ class ComingAndGoing(RuleBasedStateMachine):
         assert world.bodies == self.bodies
         assert world.joints == self.joints
         assert (world.body_count, world.joint_count) == (len(self.bodies), len(self.joints))
-        assert all(thing.alive for thing in (*self.bodies, *self.joints))
+        assert all(thing.alive for thing in (*self.bodies, *self.joints, *self.shapes))
+        assert {shape for body in self.bodies for shape in body.shapes} == set(self.shapes)
+        assert len(world.shape_records()) == len(self.shapes)
+        assert world._state.hulls.count == sum(shape.shape.name == "polygon" for shape in self.shapes)
         assert not any(thing.alive for thing in self.gone)
         assert [tuple(body.position) for body in self.bodies] == [tuple(row) for row in world.positions]
         ignored = {
@@ -282,21 +322,35 @@ def test_body_at() -> None:
 # --- determinism ------------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.parametrize("solver", SOLVERS)
 @pytest.mark.parametrize("precision", PRECISIONS)
-def test_the_same_twice(precision: str) -> None:
-    first, second = run(busy(precision), 200), run(busy(precision), 200)
+def test_the_same_twice(precision: str, solver: str) -> None:
+    first, second = (run(gathering(precision, solver=solver), 200) for _ in range(2))
     assert first.state_hash() == second.state_hash()
     assert tables_of(first) == tables_of(second)
 
 
-@pytest.mark.parametrize("name", BROAD_PHASES)
-def test_the_broad_phase_does_not_show(name: str) -> None:
-    assert run(busy(broad_phase=name), 100).state_hash() == run(busy(broad_phase="all_pairs"), 100).state_hash()
+@pytest.mark.parametrize("solver", SOLVERS)
+@pytest.mark.parametrize("make", [busy, gathering])
+@pytest.mark.parametrize("precision", PRECISIONS)
+def test_the_broad_phase_does_not_show(make, precision: str, solver: str) -> None:
+    def play(names: list[str]) -> str:
+        world = make(precision, solver=solver)
+        for name in names:  # it may also change while the world runs
+            world.broad_phase = name
+            run(world, 40)
+            world.bodies[1].position += (0.0, 0.05)
+            world.create_body(Circle(0.3), position=(0.1, 3))
+            run(world, 40)
+        return world.state_hash()
+
+    assert len({play(names) for names in ([a, b] for a in BROAD_PHASES for b in BROAD_PHASES)}) == 1
 
 
-def test_worlds_do_not_know_each_other() -> None:
-    alone = run(busy(), 60).state_hash()
-    world, other = busy(), busy(gravity=(3, 0))
+@pytest.mark.parametrize("solver", SOLVERS)
+def test_worlds_do_not_know_each_other(solver: str) -> None:
+    alone = run(busy(solver=solver), 60).state_hash()
+    world, other = busy(solver=solver), busy(gravity=(3, 0))
     for _ in range(60):
         world.step(DT)
         other.step(0.01)

@@ -12,18 +12,20 @@ import math
 import sys
 from collections.abc import Callable
 from itertools import pairwise
+from typing import Any
 
 import numba
 import numpy as np
 
-from engine import Box, Circle, World
+from engine import SOLVERS, Box, Capsule, Chain, Circle, Polygon, Segment, World
 from engine.trigonometry import cos_sin
-from tests.engine.worlds import DT, PRECISIONS, floor, tables_of
+from tests.engine.worlds import DT, POINTS, PRECISIONS, floor, tables_of
 
-STEPS = 60
-ITERATIONS = 4
+STEPS = 30
+ITERATIONS = 4  # of the talk's solver
 SWITCHED = (("boxes", "single"), ("joined", "double"))
 SWITCHES = ("accumulate_impulses", "warm_starting", "position_correction")
+TALKS = SWITCHES[0]  # soft_step does not know it
 
 
 def boxes(world: World) -> None:
@@ -69,22 +71,115 @@ def changing(world: World) -> None:
     world.bodies[1].apply_force((3, 2), (0.2, 1.5))
 
 
+def outlines(world: World) -> None:
+    """Every shape on every shape that it can touch, chains and segments below."""
+    ground = world.create_body(kind="static")
+    ground.add_shape(Chain(((-4, 0.6), (-2, 0.05), (0, 0), (1.5, 0.1))))
+    ground.add_shape(Segment((1.4, 0.1), (5, 0.3)), friction=0.7)
+    world.create_body(Capsule(0.8, 0.2), position=(-2.5, 0.6), angle=0.3, angular_velocity=2)
+    world.create_body(Polygon(POINTS), position=(-1.4, 0.5), angle=2.0)
+    world.create_body(Circle(0.25), position=(-0.5, 0.3), velocity=(-1, 0))
+    world.create_body(Box(0.6, 0.4), position=(0.2, 0.3), angle=0.2)
+    world.create_body(Polygon(POINTS, radius=0.1), position=(-2.2, 1.2), velocity=(0.5, -2))
+    world.create_body(Circle(0.2), position=(-1.3, 1.3), velocity=(0, -2))
+    world.create_body(Capsule(0.4, 0.15), position=(-0.2, 0.8), angle=1.2, velocity=(0, -1))
+    world.create_body(Box(0.5, 0.5), position=(2, 0.5), angle=0.5, velocity=(-1, -1))
+    world.create_body(Polygon(POINTS), position=(2.9, 0.75), velocity=(-1, 0))
+    world.create_body(Capsule(0.4, 0.15), position=(3.6, 0.6), angle=1.0)
+    world.create_body(Circle(0.3), position=(2.1, 1.2), velocity=(1, -2))
+
+
+def compounds(world: World) -> None:
+    """Bodies of several shapes with their centres off their origins, one of which loses and gains a shape."""
+    floor(world)
+    hammer = world.create_body(Box(0.2, 1.0), position=(0, 0.8), angle=0.4, friction=0.9)
+    hammer.add_shape(Capsule(0.5, 0.15), offset=(0.1, 0.5), angle=0.3, density=4)
+    other = world.create_body(Polygon(POINTS), position=(0.9, 0.7), velocity=(-1, 0))
+    head = other.add_shape(Circle(0.3), offset=(0.2, 0.4))
+    world.create_joint_revolute(hammer, other, anchor=(0.5, 0.9))
+    head.destroy()
+    other.add_shape(Box(0.3, 0.3), offset=(-0.4, 0.2), angle=0.7, density=0.5)
+
+
+def driven(world: World) -> None:
+    """Kinematic bodies, bodies that do not turn, and all that slows or lightens a body by itself."""
+    plate = world.create_body(Box(3, 0.3), position=(0, 0.2), kind="kinematic", velocity=(0.7, 0.2))
+    plate.angular_velocity = 0.4
+    world.create_body(Box(0.5, 0.5), position=(-0.6, 0.65), fixed_rotation=True, angle=0.1)
+    world.create_body(Circle(0.3), position=(0.3, 0.8), linear_damping=1.5, angular_damping=0.5, angular_velocity=9)
+    world.create_body(Capsule(0.3, 0.2), position=(0.9, 0.9), gravity_scale=0.25, velocity=(0, -2))
+    world.create_body(Box(0.3, 0.3), position=(0, 1.6), gravity_scale=-0.5, angular_damping=3, angular_velocity=7)
+
+
+def filtered(world: World) -> None:
+    """Categories, masks and groups: some pass through each other."""
+    floor(world, category=2)
+    world.create_body(Box(0.5, 0.5), position=(0, 0.3), category=4, mask=2)
+    world.create_body(Box(0.5, 0.5), position=(0.1, 0.7), category=4, mask=4)
+    world.create_body(Circle(0.3), position=(0.2, 0.5), group=-3)
+    world.create_body(Circle(0.3), position=(0.3, 0.6), group=-3)
+    world.create_body(Circle(0.2), position=(0.5, 0.4), group=7, mask=0)
+    world.create_body(Circle(0.2), position=(0.6, 0.5), group=7, mask=0)
+
+
+def lively(world: World) -> None:
+    """What sequential_impulses lacks: restitution, rolling resistance, belts; on every shape."""
+    floor(world, tangent_speed=0.8, restitution=0.1)
+    world.create_body(Circle(0.3), position=(-1, 0.5), velocity=(0, -3), restitution=0.8)
+    world.create_body(Box(0.5, 0.3), position=(0, 0.2), angle=0.1, velocity=(0, -2), restitution=0.5)
+    world.create_body(Circle(0.25), position=(1, 0.26), velocity=(3, 0), rolling_resistance=0.3)
+    world.create_body(Capsule(0.4, 0.2), position=(2, 0.3), angle=0.2, rolling_resistance=0.1, tangent_speed=-0.5)
+    world.create_body(Polygon(POINTS, radius=0.1), position=(3, 0.5), restitution=0.4, rolling_resistance=0.2)
+    world.create_body(Circle(0.3), position=(1.1, 0.9), velocity=(0, -4), restitution=1.0, rolling_resistance=0.5)
+
+
+def frictionless(world: World) -> None:
+    """No friction and no gravity."""
+    world.gravity = (0, 0)
+    world.create_body(Box(1, 1), position=(0, 0), velocity=(1, 0), friction=0)
+    world.create_body(Box(0.7, 0.4), position=(0.95, 0.2), angle=0.4, velocity=(-1, 0), friction=0)
+    world.create_body(Circle(0.3), position=(0.2, 0.9), velocity=(0, -2), friction=0)
+
+
 WORLDS: dict[str, Callable[[World], None]] = {
-    build.__name__: build for build in (boxes, circles, mixed, joined, changing)
+    build.__name__: build
+    for build in (
+        boxes, circles, mixed, joined, changing, outlines, compounds, driven, filtered, lively, frictionless,
+    )
 }  # fmt: skip
+SOFT_ONLY = ("lively",)
+SETTINGS: dict[str, dict[str, Any]] = {  # of some of them, with soft_step
+    "boxes": {"substeps": 3, "iterations": 2},
+    "circles": {"stiffness": "fixed", "substeps": 8},
+    "mixed": {"recycling": False},
+    "lively": {"restitution_mixing": "mean", "friction_mixing": "least", "restitution_threshold": 0.2},
+}
 
 
-def variants() -> dict[str, World]:
-    """Every world in either precision, and some with each switch off."""
+def fill(name: str, solver: str, precision: str, **settings: Any) -> World:
+    """A world of that name."""
+    talk = {"iterations": ITERATIONS} if solver == "sequential_impulses" else {}
+    world = World(solver=solver, precision=precision, **{**talk, **settings})
+    WORLDS[name](world)
+    return world
+
+
+def cases() -> dict[str, tuple[str, str, str, dict[str, Any]]]:
+    """Arguments of `fill`: every world with either solver and in either precision, and some with other settings."""
     found = {}
-    for name, build in WORLDS.items():
-        for precision in PRECISIONS:
-            for off in (None, *SWITCHES) if (name, precision) in SWITCHED else (None,):
-                world = World(precision=precision, iterations=ITERATIONS)
-                if off:
-                    setattr(world, off, False)
-                build(world)
-                found[f"{name}, {precision}" + (f", no {off}" if off else "")] = world
+    for name in WORLDS:
+        for solver in SOLVERS:
+            if solver == "sequential_impulses" and name in SOFT_ONLY:
+                continue
+            for precision in PRECISIONS:
+                changes: list[dict[str, Any]] = [{}]
+                if (name, precision) in SWITCHED:
+                    changes += [{switch: False} for switch in SWITCHES if solver != "soft_step" or switch != TALKS]
+                if solver == "soft_step" and precision == "single" and name in SETTINGS:
+                    changes.append(SETTINGS[name])
+                for change in changes:
+                    more = "".join(f", {setting} {value}" for setting, value in change.items())
+                    found[f"{name}, {solver}, {precision}{more}"] = (name, solver, precision, change)
     return found
 
 
@@ -123,7 +218,7 @@ def signatures() -> dict[str, int]:
 
 def report() -> dict:
     return {
-        "worlds": {name: digests(world) for name, world in variants().items()},
+        "worlds": {title: digests(fill(*case[:3], **case[3])) for title, case in cases().items()},
         "trigonometry": trigonometry(),
         "signatures": signatures(),
         "compiled": not numba.config.DISABLE_JIT,

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from engine import Box, World
+from tests.engine.worlds import talk
 
 DATA = Path(__file__).parent.parent / "data" / "box2d_lite"
 NAMES = sorted(path.stem for path in DATA.glob("*.json"))
@@ -28,10 +29,11 @@ def load(name: str) -> Reference:
         return Reference(start, data["trajectory"], data["contacts"], data["joints"])
 
 
-def build(start: dict, precision: str = "double") -> World:
+def build(start: dict, precision: str = "double", broad_phase: str = "dynamic_tree") -> World:
     """The world that a reference starts from."""
-    world = World(gravity=start["gravity"], solver="sequential_impulses", iterations=start["iterations"],
-                  precision=precision)  # fmt: skip
+    world = talk(
+        gravity=start["gravity"], iterations=start["iterations"], precision=precision, broad_phase=broad_phase
+    )  # fmt: skip
     for name in ("accumulate_impulses", "warm_starting", "position_correction"):
         setattr(world, name, bool(start.get(name, True)))
     bodies = []

@@ -8,10 +8,12 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from engine import Box, Circle, RevoluteJoint, World
-from tests.engine.worlds import DT, PRECISIONS, run
+from engine import SOLVERS, Box, Circle, RevoluteJoint, World
+from tests.engine.worlds import DT, PRECISIONS, run, talk
 
 pytestmark = pytest.mark.kernel
+
+either = pytest.mark.parametrize("solver", SOLVERS)
 
 
 def pendulum(precision: str, angle: float, length: float = 2.0, **settings) -> tuple[World, RevoluteJoint]:
@@ -28,9 +30,10 @@ def apart(joint: RevoluteJoint) -> float:
     return math.hypot(a.x - b.x, a.y - b.y)
 
 
+@either
 @pytest.mark.parametrize("precision", PRECISIONS)
-def test_it_holds(precision: str) -> None:
-    world, joint = pendulum(precision, 1.5)
+def test_it_holds(precision: str, solver: str) -> None:
+    world, joint = pendulum(precision, 1.5, solver=solver)
     farthest = 0.0
     for _ in range(300):
         world.step(DT)
@@ -38,10 +41,11 @@ def test_it_holds(precision: str) -> None:
     assert 0 < farthest < 0.02
 
 
+@either
 @pytest.mark.parametrize("angle", [0.05, 1.0])
-def test_period_of_a_pendulum(angle: float) -> None:
+def test_period_of_a_pendulum(angle: float, solver: str) -> None:
     length, inertia = 2.0, 0.5 * 0.2**2  # per mass, about the bob's own centre
-    world, joint = pendulum("double", angle, length)
+    world, joint = pendulum("double", angle, length, solver=solver)
     bob = joint.body2
     crossings, before = [], bob.position.x
     dt = 1 / 240
@@ -60,16 +64,17 @@ def test_period_of_a_pendulum(angle: float) -> None:
     assert period == pytest.approx(small / a, rel=2e-3)
 
 
-def test_hanging_still_it_carries_the_weight() -> None:
-    world, joint = pendulum("double", 0.0)
-    run(world, 5)
+@either
+def test_hanging_still_it_carries_the_weight(solver: str) -> None:
+    world, joint = pendulum("double", 0.0, solver=solver)
+    run(world, 5 if solver == "sequential_impulses" else 120)
     assert joint.impulse.y == pytest.approx(3 * 10 * DT, rel=1e-9)
     assert joint.impulse.x == pytest.approx(0.0, abs=1e-12)
 
 
 def test_one_impulse_stops_both_anchors() -> None:
     # K P = -dv, solved exactly for one joint in one pass: afterwards the anchors move as one
-    world = World(gravity=(0, 0), precision="double", iterations=1)
+    world = talk(gravity=(0, 0), precision="double", iterations=1)
     a = world.create_body(Box(1, 3), position=(0, 0), velocity=(1, 2), angular_velocity=3, mass=2)
     b = world.create_body(Box(2, 1), position=(2, 1), velocity=(-3, 1), angular_velocity=-1, mass=5)
     joint = world.create_joint_revolute(a, b, anchor=(1, 0.2), collide_connected=False)
@@ -85,12 +90,24 @@ def test_one_impulse_stops_both_anchors() -> None:
     assert b.velocity.x - -3 == pytest.approx(joint.impulse.x / 5, rel=1e-12)  # on body2
 
 
+def test_after_a_soft_step_both_anchors_move_as_one() -> None:
+    world = World(gravity=(0, 0), precision="double")
+    a = world.create_body(Box(1, 3), position=(0, 0), velocity=(1, 2), angular_velocity=3, mass=2)
+    b = world.create_body(Box(2, 1), position=(2, 1), velocity=(-3, 1), angular_velocity=-1, mass=5)
+    joint = world.create_joint_revolute(a, b, anchor=(1, 0.2), collide_connected=False)
+    momentum = world.diagnostics().momentum
+    world.step(DT)
+    ends = [tuple(body.velocity_at(end)) for body, end in zip((a, b), joint.anchors, strict=True)]
+    assert ends[0] == pytest.approx(ends[1], abs=1e-4)  # how far the angles within a step lag behind: angle^3 / 12
+    assert tuple(world.diagnostics().momentum) == pytest.approx(tuple(momentum), rel=1e-14)
+
+
 @pytest.mark.parametrize("passes", [1, 20])
 def test_softness_is_a_spring_with_a_damper(passes: int) -> None:
     # x'' = -g - (k x + d x') / m by implicit Euler, step by step, whatever the number of passes
     mass, k, d, g = 2.0, 40.0, 3.0, 10.0
     softness, bias_factor = 1 / (DT * (d + DT * k)), DT * k / (d + DT * k)
-    world = World(precision="double", iterations=passes, gravity=(0, -g))
+    world = talk(precision="double", iterations=passes, gravity=(0, -g))
     pin = world.create_body(Box(0.1, 0.1), kind="static")
     bob = world.create_body(Circle(0.2), mass=mass, position=(0, 0))
     world.create_joint_revolute(
@@ -105,9 +122,91 @@ def test_softness_is_a_spring_with_a_damper(passes: int) -> None:
     assert bob.position.y == pytest.approx(-mass * g / k, rel=1e-3)  # hangs as low as a spring would
 
 
-def test_bias_factor_is_what_a_step_removes() -> None:
+SPRING = {"mass": 2.0, "k": 40.0, "d": 3.0}
+
+
+def hanging_on_a_spring(mass: float, k: float, d: float, **settings) -> tuple[World, RevoluteJoint]:
+    """A disc on a spring k [N/m] with a damper d [N s/m], at rest where the spring is slack."""
+    world = World(precision="double", **settings)
+    pin = world.create_body(Box(0.1, 0.1), kind="static")
+    bob = world.create_body(Circle(0.2), mass=mass)
+    softness, bias_factor = 1 / (DT * (d + DT * k)), DT * k / (d + DT * k)
+    return world, world.create_joint_revolute(
+        pin, bob, anchor=(0, 0), softness=softness, bias_factor=bias_factor, collide_connected=False
+    )
+
+
+@pytest.mark.parametrize(
+    ("solver", "substeps"), [("soft_step", 1), ("soft_step", 4), ("soft_step", 9), ("sequential_impulses", 1)]
+)
+def test_a_spring_hangs_as_low_as_the_weight_pulls_it(solver: str, substeps: int) -> None:
+    world, joint = hanging_on_a_spring(**SPRING, solver=solver, substeps=substeps)
+    run(world, 1500)
+    assert joint.body2.position.y == pytest.approx(-2.0 * 10 / 40, rel=1e-6)  # m g / k
+    assert joint.impulse.y == pytest.approx(2.0 * 10 * DT, rel=1e-6)
+
+
+def test_a_spring_in_substeps_comes_nearer_to_the_oscillator() -> None:
+    # m x'' = -m g - k x - d x', from rest at x = 0
+    mass, k, d = SPRING.values()
+    decay, sag = d / (2 * mass), mass * 10 / k
+    omega = math.sqrt(k / mass - decay * decay)
+    errors = []
+    for substeps in (1, 4, 16):
+        world, joint = hanging_on_a_spring(**SPRING, substeps=substeps)
+        worst = 0.0
+        for step in range(1, 181):
+            world.step(DT)
+            t = step * DT
+            swing = math.cos(omega * t) + decay / omega * math.sin(omega * t)
+            worst = max(worst, abs(joint.body2.position.y - sag * (math.exp(-decay * t) * swing - 1)))
+        errors.append(worst)
+    assert errors[0] < 0.15 * sag
+    assert errors[1] < 0.4 * errors[0]
+    assert errors[2] < 0.4 * errors[1]
+
+
+@pytest.mark.parametrize("settings", [{}, {"substeps": 8}, {"stiffness": "fixed", "joint_hertz": 20.0}])
+def test_a_rigid_joint_gives_way_as_its_frequency_says(settings: dict) -> None:
+    # a spring of m_eff w^2 in each joint, w = 2 pi f; f a quarter of the substep rate where it follows
+    hertz = settings.get("joint_hertz", settings.get("substeps", 4) / DT / 4)
+    omega = 2 * math.pi * hertz
+    world, joint = pendulum("double", 0.0, **settings)
+    run(world, 240)
+    assert -2.0 - joint.body2.position.y == pytest.approx(10 / omega**2, rel=1e-3)
+
+    # a plank on two pins: at its ends it gives way with 1/m_eff = 1/m + a^2/I, and each carries half of the weight
+    world = World(precision="double", **settings)
+    plank, pins = Box(2, 0.2), [world.create_body(Circle(0.1), position=(x, 0), kind="static") for x in (-1, 1)]
+    body = world.create_body(plank, mass=3)
+    for pin in pins:
+        world.create_joint_revolute(pin, body, anchor=tuple(pin.position), collide_connected=False)
+    run(world, 240)
+    effective = 1 / (1 / 3 + 1 / plank.inertia(3))
+    assert -body.position.y == pytest.approx(3 * 10 / 2 / (effective * omega**2), rel=0.02)
+
+
+def test_bias_factor_is_what_a_soft_step_removes() -> None:
+    # in n substeps, each its part of the rate
     for factor in (0.0, 0.2, 0.7, 1.0):
         world = World(gravity=(0, 0), precision="double")
+        pin = world.create_body(Box(0.1, 0.1), kind="static")
+        bob = world.create_body(Circle(0.2), position=(0, 0))
+        joint = world.create_joint_revolute(pin, bob, anchor=(0, 0), bias_factor=factor, collide_connected=False)
+        bob.position = (1, -2)
+        world.step(DT)
+        left = (1 - factor / 4) ** 4
+        assert tuple(bob.position) == pytest.approx((left, -2 * left), abs=1e-12)
+        assert tuple(bob.velocity) == pytest.approx((0, 0), abs=1e-9), "relaxed"
+        assert joint.bias_factor == factor
+        world.position_correction = False
+        world.step(DT)
+        assert tuple(bob.position) == pytest.approx((left, -2 * left), abs=1e-12)
+
+
+def test_bias_factor_is_what_a_step_removes() -> None:
+    for factor in (0.0, 0.2, 0.7, 1.0):
+        world = talk(gravity=(0, 0), precision="double")
         pin = world.create_body(Box(0.1, 0.1), kind="static")
         bob = world.create_body(Circle(0.2), position=(0, 0))
         joint = world.create_joint_revolute(pin, bob, anchor=(0, 0), bias_factor=factor, collide_connected=False)
@@ -124,7 +223,7 @@ def test_bias_factor_is_what_a_step_removes() -> None:
 
 
 def test_warm_starting_begins_with_the_impulses_of_the_step_before() -> None:
-    settled = World(precision="double", iterations=60)
+    settled = talk(precision="double", iterations=60)
     bodies = [settled.create_body(Box(0.1, 0.1), kind="static")]
     for k in range(5):
         bodies.append(settled.create_body(Box(0.2, 0.8), position=(0, -0.5 - k)))
@@ -141,14 +240,25 @@ def test_warm_starting_begins_with_the_impulses_of_the_step_before() -> None:
     assert speeds[False] > 0.01
 
 
-def test_default_bias_factor_is_box2d_lites() -> None:
-    assert pendulum("double", 0.3)[1].bias_factor == float(np.float32(0.2))
+def test_default_bias_factor_is_the_solvers_own() -> None:
+    # Box2D Lite's in the talk's solver; soft_step's are springs
+    pulled = {}
+    for factor in (None, float(np.float32(0.2))):
+        for solver in SOLVERS:
+            world, joint = pendulum("double", 0.3, solver=solver)
+            joint.bias_factor = factor
+            assert joint.bias_factor == factor
+            joint.body2.position += (0.1, 0.1)
+            pulled[factor, solver] = run(world, 5).state_hash()
+    assert len(set(pulled.values())) == 3
+    assert pulled[None, "sequential_impulses"] == pulled[float(np.float32(0.2)), "sequential_impulses"]
 
 
+@either
 @pytest.mark.parametrize("precision", PRECISIONS)
-def test_collide_connected(precision: str) -> None:
+def test_collide_connected(precision: str, solver: str) -> None:
     for collide in (True, False):
-        world = World(gravity=(0, 0), precision=precision)
+        world = World(gravity=(0, 0), precision=precision, solver=solver)
         a = world.create_body(Box(1, 1))
         other = world.create_body(Box(1, 1), position=(0.2, 0.1))
         b = world.create_body(Box(1, 1), position=(0.5, 0.5))
@@ -172,7 +282,7 @@ def test_destroyed_joint_lets_go_and_its_handle_is_stale() -> None:
     assert world.joints == []
     height = world.positions[1, 1]
     run(world, 10)
-    assert world.positions[1, 1] == pytest.approx(height - 10 * DT * DT * 55, rel=1e-12)
+    assert world.positions[1, 1] == pytest.approx(height - 10 * (DT / 4) ** 2 * 40 * 41 / 2, rel=1e-12)
     for name in ("body1", "body2", "impulse", "anchors", "softness", "bias_factor", "collide_connected"):
         with pytest.raises(ValueError, match=r"RevoluteJoint 0.*living"):
             getattr(joint, name)
@@ -195,9 +305,10 @@ def test_joints_are_listed_in_the_order_of_creation() -> None:
     assert [record["joint"] for record in world.joint_records()] == [0, 2, 3, 4]
 
 
+@either
 @pytest.mark.parametrize("mass", [1e-12, 1e12])
-def test_any_mass_hangs_on_a_joint(mass: float) -> None:
-    world = World(precision="single")
+def test_any_mass_hangs_on_a_joint(mass: float, solver: str) -> None:
+    world = World(precision="single", solver=solver)
     pin = world.create_body(Box(1, 1), kind="static")
     bob = world.create_body(Box(1, 1), mass=mass, position=(2, 0))
     joint = world.create_joint_revolute(pin, bob, anchor=(0.6, 0), collide_connected=False)

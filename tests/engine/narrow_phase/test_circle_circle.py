@@ -9,7 +9,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from engine import Circle
+from engine import SOLVERS, Circle
 from tests.engine.worlds import PRECISIONS, run, touching
 
 pytestmark = pytest.mark.kernel
@@ -22,13 +22,14 @@ pytestmark = pytest.mark.kernel
     radius1=st.floats(0.05, 2),
     radius2=st.floats(0.05, 2),
     precision=st.sampled_from(PRECISIONS),
+    solver=st.sampled_from(tuple(SOLVERS)),
 )
-def test_line_between_the_centres(x, y, radius1, radius2, precision) -> None:
+def test_line_between_the_centres(x, y, radius1, radius2, precision, solver) -> None:
     tolerance = 1e-12 if precision == "double" else 2e-6
     distance = math.hypot(x, y)
     separation = distance - radius1 - radius2
     assume(abs(separation) > tolerance)
-    found = touching((Circle(radius1), (7, -3), 0.0), (Circle(radius2), (7 + x, y - 3), 1.0), precision)
+    found = touching((Circle(radius1), (7, -3), 0.0), (Circle(radius2), (7 + x, y - 3), 1.0), precision, solver)
     records = found.contact_records()
     assert len(records) == (separation < 0)
     if separation > 0:

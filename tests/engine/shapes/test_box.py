@@ -10,19 +10,11 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from engine import Box, World
+from tests.engine.shapes.bounds import bounds_of
 from tests.engine.worlds import PRECISIONS
 from tests.naive.boxes import PlacedBox, overlaps
 
 pytestmark = pytest.mark.kernel
-
-
-def bounds_of(world: World) -> np.ndarray:
-    """(N, 4) lower x and y, upper x and y of every body, as the broad phase gets them."""
-    state = world._state
-    state.refresh()
-    for write in state.bounds_kernels:
-        write(state.bodies.order, state.bodies.tables["bodies"], state.bodies.tables["motions"], state.bounds)
-    return state.bounds.T.astype(np.float64)
 
 
 def test_area_and_inertia() -> None:
@@ -40,13 +32,18 @@ def test_is_immutable_and_comparable() -> None:
         Box(1, 2).width = 3  # type: ignore[misc]
 
 
-def test_extents_there_and_back() -> None:
-    assert Box.from_half_extents(*Box(0.3, 7.1).half_extents) == Box(0.3, 7.1)
+def test_there_and_back_through_the_tables() -> None:
+    box = Box(0.3, 7.1)
+    assert World().create_body(box).shape == box
+    assert World().create_body(Box(1, 1), offset=(3, 4), shape_angle=2.0).shape == Box(1, 1)
 
 
 def test_what_the_outside_is_told() -> None:
     box = Box(0.3, 7.1)
-    assert box.extent == Box.sizes(*box.half_extents) == (0.3, 7.1)
+    world = World()
+    world.create_body(box)
+    assert [column.tolist() for column in Box.sizes(world.shape_records())] == [[0.3], [7.1]]
+    assert box.extent == (0.3, 7.1)
     assert Box.filling(0.3, 7.1) == box
 
 
@@ -64,7 +61,7 @@ far = st.floats(-1e6, 1e6)
 @settings(max_examples=150, deadline=None)
 @given(width=size, height=size, x=far, y=far, angle=st.floats(-10, 10), precision=st.sampled_from(PRECISIONS))
 def test_bounds_contain_the_corners(width, height, x, y, angle, precision) -> None:
-    world = World(precision=precision)
+    world = World(precision=precision, speculative_distance=0)
     body = world.create_body(Box(width, height), position=(x, y), angle=angle, kind="static")
     corners = PlacedBox(x, y, math.atan2(body.direction.y, body.direction.x), width, height).corners
     left, bottom, right, top = bounds_of(world)[0]

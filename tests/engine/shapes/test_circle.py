@@ -10,6 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from engine import Circle, World
+from tests.engine.shapes.bounds import bounds_of
 from tests.engine.worlds import PRECISIONS
 
 pytestmark = pytest.mark.kernel
@@ -24,15 +25,17 @@ def test_area_and_inertia() -> None:
     assert circle.inertia(1.0) == pytest.approx(float(squared.mean()), rel=1e-3)
 
 
-def test_extents_there_and_back() -> None:
-    assert Circle.from_half_extents(*Circle(0.7).half_extents) == Circle(0.7)
+def test_there_and_back_through_the_tables() -> None:
+    assert World().create_body(Circle(0.7)).shape == Circle(0.7)
 
 
 def test_what_the_outside_is_told() -> None:
-    circle = Circle(0.7)
-    assert circle.extent == (1.4, 1.4)
-    assert Circle.sizes(*circle.half_extents) == (0.7, 0.0)
-    assert Circle.filling(1.4, 99) == circle
+    world = World()
+    world.create_body(Circle(0.7))
+    radii, nothing = Circle.sizes(world.shape_records())
+    assert (radii.tolist(), nothing) == ([0.7], 0.0)
+    assert Circle(0.7).extent == (1.4, 1.4)
+    assert Circle.filling(1.4, 99) == Circle(0.7)
 
 
 def test_contains() -> None:
@@ -46,13 +49,9 @@ def test_contains() -> None:
     radius=st.floats(1e-3, 1e6), x=st.floats(-1e6, 1e6), y=st.floats(-1e6, 1e6), precision=st.sampled_from(PRECISIONS)
 )
 def test_bounds_contain_the_circle(radius, x, y, precision) -> None:
-    world = World(precision=precision)
+    world = World(precision=precision, speculative_distance=0)
     world.create_body(Circle(radius), position=(x, y), kind="static")
-    state = world._state
-    state.refresh()
-    for write in state.bounds_kernels:
-        write(state.bodies.order, state.bodies.tables["bodies"], state.bodies.tables["motions"], state.bounds)
-    left, bottom, right, top = state.bounds[:, 0].astype(np.float64)
+    left, bottom, right, top = bounds_of(world)[0]
     assert left <= x - radius
     assert bottom <= y - radius
     assert right >= x + radius

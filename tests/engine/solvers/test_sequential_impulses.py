@@ -7,11 +7,11 @@ import math
 import numpy as np
 import pytest
 
-from engine import Box, Circle, World
+from engine import Box, Circle
 from engine.solvers.sequential_impulses import effective_mass
 from engine.tables import empty, motion_dtype
 from engine.vec2 import Vec2
-from tests.engine.worlds import DT, PRECISIONS, busy, floor, run
+from tests.engine.worlds import DT, PRECISIONS, busy, floor, run, talk
 
 pytestmark = pytest.mark.kernel
 
@@ -19,7 +19,7 @@ MASS = 3.0
 WIDTHS = (1e-6, 0.1, 0.5, 1.0, 2.0, 7.0, 1e6)
 
 
-def talk(a: float, mass: float) -> float:
+def corner_mass(a: float, mass: float) -> float:
     """Effective mass of a box of width a and height 1 at a bottom corner, along the vertical (talk, example 3)."""
     return (a * a + 1) / (4 * a * a + 1) * mass
 
@@ -36,11 +36,11 @@ def motions(*bodies: tuple[float, float], precision: str = "double") -> np.ndarr
 def test_effective_mass_of_a_corner(a: float) -> None:
     rows = motions((math.inf, math.inf), (MASS, Box(a, 1).inertia(MASS)))
     m = effective_mass(rows[0], rows[1], Vec2(5.0, 1.0), Vec2(0.5 * a, -0.5), Vec2(0.0, 1.0))
-    assert m == pytest.approx(talk(a, MASS), rel=1e-12)
+    assert m == pytest.approx(corner_mass(a, MASS), rel=1e-12)
 
 
 def test_effective_mass_of_the_talks_special_cases() -> None:
-    assert talk(1.0, 1.0) == 2 / 5
+    assert corner_mass(1.0, 1.0) == 2 / 5
     rows = motions((math.inf, math.inf), (MASS, 0.7), (MASS, 0.7))
     up, center = Vec2(0.0, 1.0), Vec2(0.0, -0.5)
     # below the centre: the whole mass; two alike: half of it
@@ -60,7 +60,7 @@ def test_effective_mass_in_single() -> None:
 
 def impact(a: float, precision: str, tilt: float) -> tuple[float, float, float]:
     """Impulse, velocity and spin of a box a x 1 that falls with 2 m/s on its lower right corner, without friction."""
-    world = World(gravity=(0, 0), precision=precision, iterations=1, position_correction=False)
+    world = talk(gravity=(0, 0), precision=precision, iterations=1, position_correction=False)
     floor(world)
     y = 0.5 * math.cos(tilt) + 0.5 * a * math.sin(tilt) - 0.1 * a * tilt  # the left corner is still above the floor
     box = world.create_body(Box(a, 1), position=(0, y), angle=-tilt, mass=MASS, velocity=(0, -2), friction=0)
@@ -73,7 +73,7 @@ def impact(a: float, precision: str, tilt: float) -> tuple[float, float, float]:
 @pytest.mark.parametrize("a", [0.1, 0.5, 1.0, 2.0, 7.0])
 def test_impact_on_a_corner(a: float) -> None:
     impulse, speed, spin = impact(a, "double", 1e-8)
-    assert impulse == pytest.approx(talk(a, MASS) * 2, rel=1e-6)
+    assert impulse == pytest.approx(corner_mass(a, MASS) * 2, rel=1e-6)
     assert speed == pytest.approx(-2 + impulse / MASS, rel=1e-9)
     assert spin == pytest.approx(0.5 * a * impulse / Box(a, 1).inertia(MASS), rel=1e-6)
     assert speed + spin * 0.5 * a == pytest.approx(0.0, abs=1e-6)  # the corner stops
@@ -86,7 +86,7 @@ def test_impact_in_single() -> None:
 @pytest.mark.parametrize("precision", PRECISIONS)
 def test_impact_of_two_equal_bodies(precision: str) -> None:
     # m_n = m / 2, and nothing bounces: both go on with the mean of their speeds
-    world = World(gravity=(0, 0), precision=precision, iterations=1, position_correction=False)
+    world = talk(gravity=(0, 0), precision=precision, iterations=1, position_correction=False)
     left = world.create_body(Circle(0.5), position=(-0.499, 0), mass=MASS, velocity=(3, 0))
     right = world.create_body(Circle(0.5), position=(0.499, 0), mass=MASS, velocity=(-1, 0))
     world.step(DT)
@@ -96,7 +96,7 @@ def test_impact_of_two_equal_bodies(precision: str) -> None:
 
 
 def test_bodies_that_part_get_no_impulse() -> None:
-    world = World(gravity=(0, 0), precision="double", position_correction=False)
+    world = talk(gravity=(0, 0), precision="double", position_correction=False)
     world.create_body(Circle(0.5), position=(-0.499, 0), velocity=(-1, 0))
     world.create_body(Circle(0.5), position=(0.499, 0), velocity=(1, 0))
     world.step(DT)
@@ -107,7 +107,7 @@ def test_bodies_that_part_get_no_impulse() -> None:
 @pytest.mark.parametrize("accumulate", [True, False])
 @pytest.mark.parametrize("precision", PRECISIONS)
 def test_impulses_push_and_friction_stays_in_its_cone(accumulate: bool, precision: str) -> None:
-    world = busy(precision, accumulate_impulses=accumulate)
+    world = busy(precision, solver="sequential_impulses", accumulate_impulses=accumulate)
     for _ in range(100):
         world.step(DT)
         for arbiter in world.arbiters:
@@ -117,7 +117,7 @@ def test_impulses_push_and_friction_stays_in_its_cone(accumulate: bool, precisio
 
 
 def test_friction_is_the_geometric_mean() -> None:
-    world = World(precision="double")
+    world = talk(precision="double")
     floor(world, friction=0.9)
     world.create_body(Box(1, 1), position=(0, 0.499), friction=0.4)
     world.step(DT)
@@ -125,7 +125,7 @@ def test_friction_is_the_geometric_mean() -> None:
 
 
 def test_friction_is_bounded_by_the_normal_impulse() -> None:
-    world = World(precision="double", position_correction=False)
+    world = talk(precision="double", position_correction=False)
     floor(world, friction=0.5)
     box = world.create_body(Circle(0.5), position=(0, 0.4999), mass=2, velocity=(5, 0), friction=0.5)
     world.step(DT)
@@ -138,7 +138,7 @@ def test_friction_is_bounded_by_the_normal_impulse() -> None:
 @pytest.mark.parametrize("precision", PRECISIONS)
 def test_position_correction_removes_a_fifth_of_the_overlap_beyond_the_slop(precision: str) -> None:
     for correct in (True, False):
-        world = World(gravity=(0, 0), precision=precision, position_correction=correct)
+        world = talk(gravity=(0, 0), precision=precision, position_correction=correct)
         floor(world)
         circle = world.create_body(Circle(0.5), position=(0, 0.4))
         world.step(DT)
@@ -147,7 +147,7 @@ def test_position_correction_removes_a_fifth_of_the_overlap_beyond_the_slop(prec
 
 
 def test_overlap_within_the_slop_is_left_alone() -> None:
-    world = World(gravity=(0, 0), precision="double")
+    world = talk(gravity=(0, 0), precision="double")
     floor(world)
     circle = world.create_body(Circle(0.5), position=(0, 0.4901))
     run(world, 20)
@@ -157,7 +157,7 @@ def test_overlap_within_the_slop_is_left_alone() -> None:
 
 def test_warm_starting_begins_with_the_impulses_of_the_step_before() -> None:
     # a settled box: one pass suffices if it starts from the answer, and falls short otherwise
-    settled = World(precision="double", iterations=40)
+    settled = talk(precision="double", iterations=40)
     floor(settled)
     for k in range(4):
         settled.create_body(Box(1, 1), position=(0, 0.495 + 0.99 * k))
@@ -165,7 +165,7 @@ def test_warm_starting_begins_with_the_impulses_of_the_step_before() -> None:
     assert len(settled.contact_records()) == 8
     left_over = {}
     for warm in (True, False):
-        world = World(precision="double")
+        world = talk(precision="double")
         world.restore(settled.snapshot())
         world.set(iterations=1, warm_starting=warm)
         world.step(DT)
@@ -175,7 +175,7 @@ def test_warm_starting_begins_with_the_impulses_of_the_step_before() -> None:
 
 
 def test_without_accumulation_nothing_is_carried() -> None:
-    world = busy("double", accumulate_impulses=False)
+    world = busy("double", solver="sequential_impulses", accumulate_impulses=False)
     records = run(world, 60).contact_records()
     assert len(records) > 0
     assert not records["normal_impulse"].any()
@@ -184,7 +184,7 @@ def test_without_accumulation_nothing_is_carried() -> None:
 def test_more_iterations_come_nearer_to_the_answer() -> None:
     errors = []
     for iterations in (1, 4, 16, 64):
-        world = World(precision="double", iterations=iterations, warm_starting=False, position_correction=False)
+        world = talk(precision="double", iterations=iterations, warm_starting=False, position_correction=False)
         floor(world)
         for k in range(3):
             world.create_body(Box(1, 1), position=(0, 0.499 + 0.999 * k))

@@ -1,0 +1,27 @@
+"""What a solver is to the step: its last three stages, and what it can do."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from engine.settings import Settings
+    from engine.state import State
+
+
+@dataclass(frozen=True)
+class Solver:
+    """A way to keep contacts and joints. The stages that can lose a body return its row, or -1."""
+
+    name: str
+    apply_forces: Callable[[State, Settings], int]
+    solve: Callable[[State, Settings], None]
+    update_positions: Callable[[State, Settings], int]
+    iterations: int  # where the user says nothing
+    substeps: int = 1
+    has_substeps: bool = False
+    speculative: bool = False  # it takes contacts before shapes touch, and kept ones
+    talk_clipping: bool = False  # two boxes collide as in the talk
+    lacks: tuple[str, ...] = ()  # effects that it refuses
