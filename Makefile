@@ -8,7 +8,7 @@ PYTHON ?=
 ARGS ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help run test check bench pictures lock clean
+.PHONY: help run test check bench pictures tables golden lock clean
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-8s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -30,6 +30,14 @@ bench: $(STAMP) ## time the engine: make bench ARGS="..."
 
 pictures: $(STAMP) ## make the pictures of the documents again
 	$(VENV)/bin/python -m tests.pictures
+
+tables: $(STAMP) ## measure the documents' tables and diagrams again, on a quiet machine
+	$(VENV)/bin/tumble accuracy -o docs
+	$(VENV)/bin/tumble stability -o docs
+	$(VENV)/bin/tumble effects "The Talk/Pyramid" "Effects/Wind" --markdown docs/effects.md
+
+golden: $(STAMP) ## write the golden hashes again, after a change of behaviour that was meant
+	$(VENV)/bin/python -m tests.golden.hashes
 
 # Kernels are compiled again after this, and each stale copy of them is gone.
 clean: ## remove compiled kernels and caches (not .venv)

@@ -1,11 +1,14 @@
-"""Compiling everything beforehand, and saying what is being compiled while a person waits."""
+"""Compiling beforehand what will be called for, and saying what is being compiled while a person waits."""
 
 from __future__ import annotations
 
+import threading
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
+from typing import Any
 
-from engine import Box, Circle
+from engine import EFFECTS, SHAPES, SOLVERS, Box, World
 from engine.compilation import watch_compilation
 from sandbox.scenes import Scene
 from sandbox.simulation import Simulation
@@ -13,33 +16,66 @@ from sandbox.simulation import Simulation
 Say = Callable[[str], None]
 
 
-def exercise(precision: str) -> None:
-    """Runs every kernel once: all shapes, all pairs of them, joints that collide and that do not."""
-    simulation = Simulation(Scene("warm up", lambda world: None, "", (0.0, 0.0, 1.0)), precision=precision)
-    world = simulation.world
-    ground = world.create_body(Box(10, 1), kind="static")
-    box = world.create_body(Box(1, 1), position=(0, 0.9))
-    for x, shape in ((0.2, Box(1, 1)), (0.4, Circle(0.5)), (0.6, Circle(0.5))):
-        world.create_body(shape, position=(x, 1.6))
-    world.create_joint_revolute(ground, box, anchor=(0, 0), collide_connected=False)
-    for _ in range(2):
+@contextmanager
+def announced(say: Say) -> Iterator[list[str]]:
+    """Names the kernels that are compiled while this lasts; gives the list of them, which grows."""
+    names: list[str] = []
+
+    def announce(kernel: str) -> None:
+        if not names:
+            say("compiling the engine; this is kept on disk, so it waits for it only once:")
+        names.append(kernel)
+        say(f"  {kernel}")
+
+    with watch_compilation(announce):
+        yield names
+
+
+def rehearse(scene: Scene, say: Say, **settings: Any) -> None:
+    """Compiles what this scene calls for, and a box that is spawned into it: what one does first."""
+    with announced(say):
+        simulation = Simulation(scene, **settings)
+        x, y, height = scene.view
         simulation.step()
-    simulation.frame()
+        simulation.world.create_body(Box(1, 1), position=(x, y + height))
+        simulation.step()
+        simulation.frame()
+
+
+def exercise(precision: str) -> None:
+    """Runs every kernel once: each solver, all shapes, all pairs of them, joints, every effect."""
+    for solver in SOLVERS.values():
+        empty = Scene("warm up", lambda world: None, "", (0.0, 0.0, 1.0))
+        simulation = Simulation(empty, precision=precision, solver=solver.name)
+        fill(simulation.world)
+        simulation.step()
+        simulation.frame()
+        state = simulation.world._state
+        state.forced = frozenset(effect.name for effect in EFFECTS if effect.name not in solver.lacks)
+        state.stale = True
+        simulation.step()
+
+
+def fill(world: World) -> None:
+    """Everything on top of each other."""
+    ground = world.create_body(kind="static")
+    for number, shape in enumerate(SHAPES):
+        ground.add_shape(shape.filling(1.0, 1.0))
+        for _ in range(2):
+            body = world.create_body(position=(0.1 * number, 0.2))
+            body.add_shape(shape.filling(1.0, 1.0))
+    world.create_joint_revolute(ground, world.bodies[1], anchor=(0, 0), collide_connected=False)
 
 
 def compile_all(say: Say, precisions: Iterable[str] = ("single",)) -> tuple[int, float]:
     """Compiles what is not on disk yet, and says what. Returns the number of kernels compiled and the time [s]."""
     started = time.perf_counter()
-    count = 0
-
-    def announce(kernel: str) -> None:
-        nonlocal count
-        if count == 0:
-            say("compiling the engine; this is kept on disk, so it waits for it only once:")
-        count += 1
-        say(f"  {kernel}")
-
-    with watch_compilation(announce):
+    with announced(say) as names:
         for precision in precisions:
             exercise(precision)
-    return count, time.perf_counter() - started
+    return len(names), time.perf_counter() - started
+
+
+def compile_rest(precision: str) -> None:
+    """Compiles in the background what a scene does not call for yet but a visitor may: nothing waits for it."""
+    threading.Thread(target=exercise, args=(precision,), name="compiling", daemon=True).start()

@@ -57,7 +57,7 @@ def pull(hand: Hand, body: Body, dt: float) -> None:
     stiffness, mass and time step.
     """
     px, py = hand.held_point(body)
-    rx, ry = px - body.position.x, py - body.position.y
+    rx, ry = px - body.center.x, py - body.center.y
     omega = 2.0 * math.pi * FREQUENCY
     damper = 2.0 * body.mass * DAMPING_RATIO * omega
     spring = body.mass * omega * omega

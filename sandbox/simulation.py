@@ -12,8 +12,8 @@ import numpy as np
 
 from engine import Body, Box, Snapshot, validate
 from engine.constants import float32_value
-from engine.shapes import SHAPES
 from sandbox.commands import PhysicsCommand
+from sandbox.content import ContentKeeper
 from sandbox.frame import Frame, Status
 from sandbox.hands import Hand, pull
 from sandbox.scenes import Scene, find_scene
@@ -32,6 +32,7 @@ class Simulation:
         self.hands: dict[int, Hand] = {}
         self.bomb_serial = -1
         self.content = 0  # changes whenever bodies came or went
+        self._keeper = ContentKeeper()
 
     def apply(self, command: PhysicsCommand) -> None:
         """Applies a command before the next step. ValueError if it cannot be done now; then nothing changes."""
@@ -102,24 +103,22 @@ class Simulation:
     def frame(self, commands: tuple[dict, ...] = (), status: Status | None = None) -> Frame:
         """What there is to see now."""
         world = self.world
-        records = world.body_records()
         frame = Frame(
             scene=self.scene.name,
             step=world.step_count,
             time=world.time,
             dt=self.dt,
-            serials=records["serial"],
-            body_kinds=records["kind"].astype(np.uint8),
-            shape_kinds=records["shape_kind"].astype(np.uint8),
-            sizes=shape_sizes(records),
             positions=np.array(world.positions),
             angles=np.array(world.angles),
             velocities=np.array(world.velocities),
             angular_velocities=np.array(world.angular_velocities),
+            **self._keeper.content(world, self.content)._asdict(),
+            bounds=np.array(world.bounds),
             contacts=world.contact_records(),
             joints=world.joint_records(),
             diagnostics=world.diagnostics(),
             settings=world.settings,
+            effects=world.effects,
             stage_ms={name: 1e3 * seconds for name, seconds in world.stage_times.items()},
             commands=commands,
             content=self.content,
@@ -129,12 +128,3 @@ class Simulation:
             if isinstance(value, np.ndarray):
                 value.flags.writeable = False
         return frame
-
-
-def shape_sizes(records: np.ndarray) -> np.ndarray:
-    """(N, 2) sizes of bodies as a Frame has them, from their records [m]."""
-    sizes = np.empty((len(records), 2))
-    for kind, shape in enumerate(SHAPES):
-        own = records["shape_kind"] == kind
-        sizes[own, 0], sizes[own, 1] = shape.sizes(records["half_x"][own], records["half_y"][own])
-    return sizes

@@ -29,8 +29,8 @@ EXCEPTIONS = {
     # The command line wires everything together ...
     "sandbox/cli.py": {"web", "recordings", "viser", "rerun"},
     "sandbox/verbs/": {"web", "recordings", "viser", "rerun"},
-    # ... and the engines to compare with are an extra.
-    "sandbox/lab/": {"pymunk"},
+    # ... and the laboratory draws diagrams, and compares with engines that are an extra.
+    "sandbox/lab/": {"pymunk", "matplotlib"},
 }
 
 

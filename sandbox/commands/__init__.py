@@ -13,8 +13,9 @@ from typing import Any
 
 from engine import validate
 from sandbox.commands.base import REACH, Command, PhysicsCommand
-from sandbox.commands.bodies import LARGEST_FRICTION, LARGEST_MASS, LARGEST_SPAWN, SIZES, Bomb, Spawn
+from sandbox.commands.bomb import Bomb
 from sandbox.commands.dragging import HANDS, Grab, MoveHand, Release
+from sandbox.commands.older import modern
 from sandbox.commands.session import (
     SPEEDS,
     LoadScene,
@@ -26,28 +27,18 @@ from sandbox.commands.session import (
     StepOnce,
     StopRecording,
 )
-from sandbox.commands.settings import (
-    LARGEST_GRAVITY,
-    MOST_ITERATIONS,
-    SWITCHES,
-    SetGravity,
-    SetIterations,
-    SetSolver,
-    SetSwitch,
-)
+from sandbox.commands.settings import Set
+from sandbox.commands.spawn import CORNERS, KINDS, LINES, SIZES, Spawn
 
 __all__ = [
+    "CORNERS",
     "HANDS",
-    "LARGEST_FRICTION",
-    "LARGEST_GRAVITY",
-    "LARGEST_MASS",
-    "LARGEST_SPAWN",
-    "MOST_ITERATIONS",
+    "KINDS",
+    "LINES",
     "PHYSICS",
     "REACH",
     "SIZES",
     "SPEEDS",
-    "SWITCHES",
     "Bomb",
     "Command",
     "Grab",
@@ -58,28 +49,24 @@ __all__ = [
     "Play",
     "Release",
     "Reset",
-    "SetGravity",
-    "SetIterations",
-    "SetSolver",
+    "Set",
     "SetSpeed",
-    "SetSwitch",
     "Spawn",
     "StartRecording",
     "StepOnce",
     "StopRecording",
     "command_from_dict",
+    "modern",
 ]
 
-PHYSICS = {
-    kind.name: kind
-    for kind in (SetGravity, SetIterations, SetSwitch, SetSolver, Spawn, Bomb, Grab, MoveHand, Release)
-}  # fmt: skip
+PHYSICS = {kind.name: kind for kind in (Set, Spawn, Bomb, Grab, MoveHand, Release)}
 
 
 def command_from_dict(values: Mapping[str, Any]) -> PhysicsCommand:
-    """What `to_dict` gave; anything else is a ValueError."""
+    """What `to_dict` gave, or gave in an older version; anything else is a ValueError."""
     if not isinstance(values, Mapping):
         raise validate.refuse("command", values, "a mapping of names to values")
+    values = modern(values)
     kind = PHYSICS[validate.choice("command", values.get("command"), PHYSICS)]
     arguments = {name: value for name, value in values.items() if name != "command"}
     known = {field.name for field in fields(kind)}

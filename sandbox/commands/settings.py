@@ -1,77 +1,50 @@
-"""Commands that change the world's settings."""
+"""The command that changes a setting of the world: any of them, but for the precision."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from engine import SOLVERS, validate
-from engine.constants import MAX_ITERATIONS
+from engine import validate
+from engine.settings import SettingInfo, describe
 from sandbox.commands.base import PhysicsCommand
 
 if TYPE_CHECKING:
     from sandbox.simulation import Simulation
 
-LARGEST_GRAVITY = 1000.0  # [m/s^2]
-MOST_ITERATIONS = min(1000, MAX_ITERATIONS)
-SWITCHES = ("accumulate_impulses", "warm_starting", "position_correction")
+LARGEST = 1000.0  # of any number, in its own unit: far beyond the sliders, and a step still ends, and ends finite
+FIXED = "precision"  # stays as the world was made
+
+CHANGEABLE: dict[str, SettingInfo] = {info.name: info for info in describe() if info.name != FIXED}
 
 
 @dataclass(frozen=True)
-class SetGravity(PhysicsCommand):
-    """Gravity [m/s^2]."""
+class Set(PhysicsCommand):
+    """One of the world's settings by name: Set("gravity", (0, -10)), Set("iterations", 20).
 
-    x: float
-    y: float
-    name = "set_gravity"
+    Of substeps and iterations, None is the solver's own number.
+    """
 
-    def __post_init__(self) -> None:
-        for name in ("x", "y"):
-            value = validate.between(name, getattr(self, name), -LARGEST_GRAVITY, LARGEST_GRAVITY)
-            self._keep(**{name: value})
-
-    def apply(self, simulation: Simulation) -> None:
-        simulation.world.gravity = (self.x, self.y)
-
-
-@dataclass(frozen=True)
-class SetIterations(PhysicsCommand):
-    """Passes over all constraints in a step."""
-
-    iterations: int
-    name = "set_iterations"
+    setting: str
+    value: Any
+    name = "set"
 
     def __post_init__(self) -> None:
-        self._keep(iterations=validate.whole("iterations", self.iterations, 1, MOST_ITERATIONS))
+        setting = validate.choice("setting", self.setting, CHANGEABLE)
+        self._keep(setting=setting, value=_checked(CHANGEABLE[setting], self.value))
+
+    def to_dict(self) -> dict[str, Any]:
+        value = list(self.value) if isinstance(self.value, tuple) else self.value
+        return {"command": self.name, "setting": self.setting, "value": value}
 
     def apply(self, simulation: Simulation) -> None:
-        simulation.world.iterations = self.iterations
+        simulation.world.set(**{self.setting: self.value})
 
 
-@dataclass(frozen=True)
-class SetSwitch(PhysicsCommand):
-    """One of the talk's three switches."""
-
-    switch: str
-    on: bool
-    name = "set_switch"
-
-    def __post_init__(self) -> None:
-        self._keep(switch=validate.choice("switch", self.switch, SWITCHES), on=validate.switch("on", self.on))
-
-    def apply(self, simulation: Simulation) -> None:
-        simulation.world.set(**{self.switch: self.on})
-
-
-@dataclass(frozen=True)
-class SetSolver(PhysicsCommand):
-    """The solver, by name."""
-
-    solver: str
-    name = "set_solver"
-
-    def __post_init__(self) -> None:
-        self._keep(solver=validate.choice("solver", self.solver, SOLVERS))
-
-    def apply(self, simulation: Simulation) -> None:
-        simulation.world.solver = self.solver
+def _checked(info: SettingInfo, value: Any) -> Any:
+    if info.kind == "whole":
+        return None if value is None else validate.whole(info.name, info.check(value), 1, int(LARGEST))
+    checked = info.check(value)
+    if info.kind == "vector" and max(map(abs, checked)) > LARGEST:
+        raise validate.refuse(info.name, value, f"two numbers from {-LARGEST:g} to {LARGEST:g}")
+    return validate.between(info.name, checked, 0.0, LARGEST) if info.kind == "number" else checked

@@ -4,18 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from rich.console import Console
 from rich.table import Table
 
 from sandbox.lab.bench import BLOCK, BenchResult
+from sandbox.lab.tables import rendered
 from sandbox.lab.timing import Ratio
-
-WIDTH = 120  # where the report does not go to a terminal [characters]
 
 
 def as_text(results: Sequence[BenchResult]) -> str:
     """Times of whole steps, with those of the peers below each scene's; then where our time went."""
-    return "\n\n".join(_rendered(table) for table in (step_table(results), stage_table(results)))
+    return "\n\n".join(rendered(table) for table in (step_table(results), stage_table(results)))
 
 
 def step_table(results: Sequence[BenchResult]) -> Table:
@@ -51,12 +49,3 @@ def _ms(value: float) -> str:
 
 def _ratio(ratio: Ratio) -> str:
     return f"{ratio.median:.3f} ({ratio.low:.3f} to {ratio.high:.3f})"
-
-
-def _rendered(table: Table) -> str:
-    console = Console()
-    if not console.is_terminal:
-        console = Console(width=WIDTH)
-    with console.capture() as captured:
-        console.print(table)
-    return "\n".join(line.rstrip() for line in captured.get().rstrip().split("\n"))

@@ -2,7 +2,14 @@
 
 from __future__ import annotations
 
+# They are listed everywhere in the order of these imports.
+# isort: off
 from sandbox.scenes import the_talk
+from sandbox.scenes import stacking
+from sandbox.scenes import shapes
+from sandbox.scenes import effects
+
+# isort: on
 from sandbox.scenes.registry import SCENES, Scene, UnknownScene, find_scene, scene
 
-__all__ = ["SCENES", "Scene", "UnknownScene", "find_scene", "scene", "the_talk"]
+__all__ = ["SCENES", "Scene", "UnknownScene", "effects", "find_scene", "scene", "shapes", "stacking", "the_talk"]

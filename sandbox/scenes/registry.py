@@ -1,4 +1,4 @@
-"""How a scene is made known: `@scene("Folder/Name")` above a function that fills a world."""
+"""How a scene is made known: `@scene("Folder/Name", shows=...)` above a function that fills a world."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from engine import Settings, World, validate
+from sandbox.scenes.criterion import Criterion
 
 Build = Callable[[World], None]
 View = tuple[float, float, float]
@@ -22,10 +23,11 @@ class Scene:
     summary: str
     view: View  # what to look at: centre x, centre y, height [m]
     settings: Mapping[str, Any] = field(default_factory=dict)  # where it departs from a world's defaults
+    shows: tuple[Criterion, ...] = ()  # what there is to see, as numbers
 
     def make(self, **settings: Any) -> World:
-        """A world with this scene in it; settings win over the scene's own."""
-        world = World(**{**self.settings, **settings})
+        """A world with this scene in it; settings win over the scene's own. ValueError if they do not suit it."""
+        world = World(**self.defaults().changed(settings).to_dict())
         self.build(world)
         return world
 
@@ -41,14 +43,23 @@ class UnknownScene(ValueError):
     """There is no scene of that name; the message says which come close."""
 
 
-def scene(name: str, *, view: View = (0.0, 7.0, 20.0), **settings: Any) -> Callable[[Build], Build]:
-    """Registers the function below as a scene. view: centre x, y and height of what to look at [m]."""
+def scene(
+    name: str, *, shows: Criterion | tuple[Criterion, ...], view: View = (0.0, 7.0, 20.0), **settings: Any
+) -> Callable[[Build], Build]:
+    """Registers the function below as a scene.
+
+    shows: what it shows, as a number or several; a test holds it to them, with the settings that the scene asks for.
+    view: centre x, y and height of what to look at [m].
+    """
+    criteria = (shows,) if isinstance(shows, Criterion) else tuple(shows)
+    if not criteria:
+        raise ValueError("shows = (): must say what the scene shows, at least one Criterion")
 
     def register(build: Build) -> Build:
         if name in SCENES:
             raise ValueError(f"name = {name!r}: must be a scene's name that is not taken yet")
         summary = (build.__doc__ or "").strip().split("\n")[0]
-        SCENES[name] = Scene(name, build, summary, view, settings)
+        SCENES[name] = Scene(name, build, summary, view, settings, criteria)
         return build
 
     return register

@@ -7,6 +7,6 @@ These files alone wire the sandbox to the page (web) and to recordings; they imp
 
 from __future__ import annotations
 
-from sandbox.verbs import bench, record, replay, run, scenes, verify, warmup
+from sandbox.verbs import accuracy, bench, effects, record, replay, run, scenes, stability, verify, warmup
 
-VERBS = (run, scenes, record, replay, verify, bench, warmup)
+VERBS = (run, scenes, record, replay, verify, accuracy, stability, effects, bench, warmup)

@@ -12,8 +12,7 @@ from rich.console import Console
 from rich.progress import Progress
 
 from engine import StepError
-from engine.tables import REALS
-from sandbox.compiling import compile_all
+from sandbox.compiling import rehearse
 from sandbox.lab.bench import BenchResult, bench
 from sandbox.lab.bench_report import as_text
 from sandbox.lab.peers import INSTALLABLE, Box2DLite, Peer, PeerError
@@ -57,7 +56,8 @@ def _peer_makers(options: argparse.Namespace) -> list[Callable[[], Peer]]:
 
 def _bench_all(scenes: list[Scene], peers: list[Peer], steps: int) -> list[BenchResult]:
     """One scene after the other, with a progress bar."""
-    compile_all(say, sorted({scene.defaults().precision for scene in scenes}, key=list(REALS).index))
+    for scene in scenes:
+        rehearse(scene, say)
     console = Console(stderr=True)
     with Progress(console=console, disable=not console.is_terminal, transient=True) as progress:
         results = []

@@ -5,16 +5,19 @@ from __future__ import annotations
 import argparse
 import json
 import sys
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from engine import SOLVERS, validate
-from engine.constants import MAX_ITERATIONS
-from engine.tables import REALS
+from engine import World, validate
+from engine.settings import MOST, describe
 from sandbox.scenes import Scene, UnknownScene, find_scene
 
 if TYPE_CHECKING:
     from recordings import Recording
+
+
+SETTINGS = ("solver", "substeps", "iterations", "stiffness", "precision", "broad_phase")
 
 
 class BadInput(Exception):
@@ -51,16 +54,28 @@ def whole_number(low: int, high: int) -> Any:
 
 
 def add_settings(parser: argparse.ArgumentParser) -> None:
-    """--solver, --iterations, --precision: overrides of what the scene asks for."""
-    parser.add_argument("--solver", choices=list(SOLVERS), help="default: the scene's")
-    parser.add_argument("--iterations", type=whole_number(1, MAX_ITERATIONS), metavar="N", help="default: 10")
-    parser.add_argument("--precision", choices=list(REALS), help="of the solver's numbers; default: single")
+    """--solver, --substeps, --iterations and so on: instead of what the scene asks for."""
+    for info in describe():
+        if info.name in SETTINGS:
+            flag = "--" + info.name.replace("_", "-")
+            about = f"{info.hint}; default: the scene's"
+            if info.kind == "whole":
+                parser.add_argument(flag, type=whole_number(1, MOST[info.name]), metavar="N", help=about)
+            else:
+                parser.add_argument(flag, choices=info.choices, help=about)
 
 
 def chosen_settings(options: argparse.Namespace) -> dict[str, Any]:
     """The settings that were given."""
-    names = ("solver", "iterations", "precision")
-    return {name: getattr(options, name) for name in names if getattr(options, name) is not None}
+    return {name: getattr(options, name) for name in SETTINGS if getattr(options, name) is not None}
+
+
+def made(scene: Scene, settings: Mapping[str, Any]) -> World:
+    """The scene's world. BadInput where it cannot be had with these settings."""
+    try:
+        return scene.make(**settings)
+    except ValueError as error:
+        raise BadInput(f"{scene.name}: {error}") from None
 
 
 def add_address(parser: argparse.ArgumentParser) -> None:

@@ -10,7 +10,7 @@ from rich.console import Console
 from rich.progress import track
 
 from engine import StepError
-from sandbox.compiling import compile_all
+from sandbox.compiling import rehearse
 from sandbox.recorder import PartFile
 from sandbox.signals import Stop, interruptible, stop_requested
 from sandbox.simulation import TIME_STEP, Simulation
@@ -19,6 +19,7 @@ from sandbox.verbs.common import (
     add_json,
     add_settings,
     chosen_settings,
+    made,
     report,
     say,
     scene_named,
@@ -43,13 +44,15 @@ def run(options: argparse.Namespace) -> int:
     from recordings import RecordingError
 
     settings = chosen_settings(options)
-    simulation = Simulation(scene_named(options.scene), options.dt, **settings)
+    scene = scene_named(options.scene)
+    made(scene, settings)
+    simulation = Simulation(scene, options.dt, **settings)
     if not options.output.parent.is_dir():
         raise BadInput(f"{options.output}: its folder does not exist")
     if options.output.exists() and not options.output.is_file():  # a folder, a device: nothing to put a file over
         raise BadInput(f"{options.output}: is no file that could be written anew")
     with interruptible():
-        compile_all(say, [simulation.world.precision])
+        rehearse(simulation.scene, say, **settings)
     with stop_requested() as stop:
         started = time.perf_counter()
         try:

@@ -6,13 +6,13 @@ import argparse
 import re
 import subprocess
 import webbrowser
-from dataclasses import replace
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
 from engine import Diagnostics, Settings
 from engine.vec2 import Vec2
+from sandbox.commands import modern
 from sandbox.frame import Frame, Status
 from sandbox.signals import stop_requested
 from sandbox.verbs.common import BadInput, add_address, add_recording, chosen_recording
@@ -106,12 +106,17 @@ class RecordedFrames:
             dt=state.dt,
             serials=state.serials,
             body_kinds=state.body_kinds,
-            shape_kinds=state.shape_kinds,
-            sizes=state.sizes,
             positions=state.positions,
             angles=state.angles,
             velocities=state.velocities,
             angular_velocities=state.angular_velocities,
+            shape_serials=state.shape_serials,
+            owners=state.owners,
+            shape_kinds=state.shape_kinds,
+            sizes=state.sizes,
+            places=state.places,
+            corner_counts=state.corner_counts,
+            corners=state.corners,
             contacts=state.contacts,
             joints=state.joints,
             diagnostics=Diagnostics(
@@ -124,7 +129,7 @@ class RecordedFrames:
             ),
             settings=self._settings[index],
             commands=tuple(recording.commands.get(step, ())),
-            content=hash(state.serials.tobytes()),
+            content=hash((state.serials.tobytes(), state.shape_serials.tobytes())),
             status=Status(),
         )
 
@@ -141,13 +146,7 @@ class RecordedFrames:
 
 def _changed(settings: Settings, command: dict[str, Any]) -> Settings:
     """The settings after a recorded command."""
-    match command:
-        case {"command": "set_gravity", "x": x, "y": y}:
-            return replace(settings, gravity=(x, y))
-        case {"command": "set_iterations", "iterations": iterations}:
-            return replace(settings, iterations=iterations)
-        case {"command": "set_switch", "switch": name, "on": on}:
-            return replace(settings, **{name: on})
-        case {"command": "set_solver", "solver": solver}:
-            return replace(settings, solver=solver)
+    match modern(command):
+        case {"command": "set", "setting": name, "value": value}:
+            return settings.changed({name: value})
     return settings

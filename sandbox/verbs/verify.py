@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import argparse
 import math
+from collections import deque
 from collections.abc import Iterator
 from dataclasses import asdict
+from itertools import islice
 from typing import TYPE_CHECKING, Any
 
 from rich.console import Console
 from rich.progress import track
 
 from engine import StepError
-from sandbox.compiling import compile_all
+from sandbox.compiling import announced
 from sandbox.frame import Frame
 from sandbox.repeat import repeat
 from sandbox.verbs.common import BadInput, add_json, add_recording, chosen_recording, report, say
@@ -31,8 +33,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     recording = chosen_recording(options)
+    if recording.schema == 1:
+        raise BadInput(f"{options.file}: written by an older tumble: it can be played, but not be computed again")
     try:
-        compile_all(say, [recording.settings.get("precision", "single")])
+        with announced(say):
+            deque(islice(repeat(recording), 2), 0)
         text, difference = _difference(recording)
     except (ValueError, KeyError, TypeError, AttributeError, ArithmeticError) as error:
         raise BadInput(f"{options.file}: cannot be computed again: {error}") from None

@@ -17,7 +17,7 @@ def test_help_names_every_verb(tumble: Tumble) -> None:
     code, out, _ = tumble("--help")
     assert code == 0
     for verb in VERBS:
-        assert f"\n    {verb.NAME} " in out
+        assert f"\n    {verb.NAME}" in out
         code, text, _ = tumble(verb.NAME, "--help")
         assert code == 0
         assert (verb.__doc__ or "").split("\n")[0] in text
@@ -64,6 +64,16 @@ def test_scenes_as_json(tumble: Tumble, tmp_path: Path) -> None:
         "bodies": 79,
         "joints": 0,
         "summary": "Seventy-eight boxes fall into a pyramid of base twelve.",
+        "shows": [
+            {
+                "says": "the apex is lower than twelve boxes by",
+                "unit": "m",
+                "after": 10.0,
+                "throughout": False,
+                "at_least": None,
+                "at_most": pytest.approx(0.022, rel=0.02),
+            }
+        ],
     }
     code, out, _ = tumble("scenes", "--json", tmp_path / "scenes.json")
     assert code == 0
@@ -91,4 +101,7 @@ def test_a_piped_list_of_scenes_has_a_line_a_scene(capsys: pytest.CaptureFixture
     assert len(lines) == 1 + len(SCENES)
     for line, scene in zip(lines[1:], SCENES.values(), strict=True):
         assert line.startswith(scene.name)
-        assert line.endswith(scene.summary)
+        assert scene.summary in line
+        for criterion in scene.shows:
+            assert criterion.says in line
+            assert line.endswith(" s")

@@ -13,15 +13,18 @@ import numpy as np
 import pytest
 
 import recordings
+from engine import World
 from sandbox import cli
 from sandbox import commands as ask
 from sandbox.recorder import PartFile
+from sandbox.session import Session
 from sandbox.simulation import Simulation
 from sandbox.verbs import replay
 from sandbox.verbs import run as run_verb
 from sandbox.verbs.run import open_recorder
 from tests.sandbox.commandline import VERBS_OF_A_FILE, StoppedAtOnce, Tumble, Visit, one_line
 from tests.sandbox.watching import make_unwritable, until
+from web import Cost
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
@@ -176,9 +179,9 @@ def test_replayed_frames_are_the_recorded_ones(tmp_path: Path) -> None:
     file = PartFile(tmp_path / "x.rrd", open_recorder, simulation)
     expected = []
     given: dict[int, list[Any]] = {
-        2: [ask.SetGravity(1.0, -4.0), ask.SetIterations(4)],
+        2: [ask.Set("gravity", (1.0, -4.0)), ask.Set("iterations", 4)],
         5: [ask.Spawn("box", 0.0, 15.0)],
-        6: [ask.SetSwitch("warm_starting", False), ask.SetSolver("sequential_impulses")],
+        6: [ask.Set("warm_starting", False), ask.Set("solver", "sequential_impulses")],
     }
     for step in range(1, 9):
         for command in given.get(step, []):
@@ -191,11 +194,33 @@ def test_replayed_frames_are_the_recorded_ones(tmp_path: Path) -> None:
     for index, frame in enumerate(expected):
         found = frames.frame(index)
         for name, value in vars(frame).items():
+            if name in ("stage_ms", "content", "bounds", "effects"):
+                continue  # a recording does not hold them
             if isinstance(value, np.ndarray):
                 assert getattr(found, name).tobytes() == value.tobytes(), name
-            elif name not in ("stage_ms", "content"):
+            else:
                 assert getattr(found, name) == value, name
     contents = [frames.frame(index).content for index in range(8)]
     assert len(set(contents[:4])) == 1
     assert len(set(contents[4:])) == 1
     assert contents[3] != contents[4], "a body came"
+
+
+def test_effects_are_measured_in_a_world_of_their_own(monkeypatch: pytest.MonkeyPatch) -> None:
+    """That of the scene which runs, with its settings; the session's own is left alone."""
+    measured: list[World] = []
+
+    def measure(world: World) -> dict[str, float]:
+        measured.append(world)
+        return {"gravity": 1.5}
+
+    monkeypatch.setattr(run_verb, "measure", measure)
+    monkeypatch.setattr(run_verb, "compile_costs", lambda snapshot: {"friction": 0.5})
+    session = Session("The Talk/Teeter", substeps=7)
+    first, costs = run_verb.effect_costs(session)
+    assert (first["gravity"], first["friction"]) == (Cost(1.5, None), Cost(None, None))
+    assert (costs["gravity"], costs["friction"]) == (Cost(1.5, None), Cost(None, 0.5))
+    assert set(costs) == {effect.name for effect in session.frame.effects}
+    (world,) = measured
+    assert (world.body_count, world.substeps, world.step_count) == (5, 7, run_verb.SETTLED)
+    assert session.frame.step == 0

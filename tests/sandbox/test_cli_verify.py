@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gzip
 import json
 from collections.abc import Callable
 from dataclasses import replace
@@ -158,13 +159,26 @@ def test_partial_takes_what_can_be_read(
     assert tumble("verify", file, "--partial")[:2] == (0, "40 steps identical\n")
 
 
+def test_a_recording_of_an_older_tumble_is_played_but_not_computed(tumble: Tumble, tmp_path: Path) -> None:
+    """Its settings are followed, though commands had other names."""
+    older = Path(__file__).parents[1] / "data" / "recordings" / "version1.rrd.gz"
+    file = tmp_path / "version1.rrd"
+    file.write_bytes(gzip.decompress(older.read_bytes()))
+    assert one_line(tumble("verify", file)).endswith("it can be played, but not be computed again\n")
+    frames = replay.RecordedFrames(recordings.read(file))
+    settings = [frames.frame(index).settings for index in (0, 1)]
+    assert [one.gravity for one in settings] == [(0.0, -10.0), (1.0, -9.5)]
+    assert [(one.solver, one.iterations) for one in settings] == [("sequential_impulses", n) for n in (10, 7)]
+    assert [one.warm_starting for one in settings] == [True, False]
+
+
 def tampered(recording: Any, **changes: Any) -> Callable[[Path], Any]:
     return lambda path: replace(recording, **changes)
 
 
 @pytest.mark.parametrize(
     "changes",
-    [{"snapshot": b"rubbish"}, {"hands": {}}, {"hands": {"bomb": 0, "hands": []}}, {"settings": {"precision": "half"}},
+    [{"snapshot": b"rubbish"}, {"hands": {}}, {"hands": {"bomb": 0, "hands": []}},
      {"commands": {5: ["not a mapping"]}}, {"commands": {5: [{"command": "set_gravity", "x": 1e9, "y": 0}]}}],
 )  # fmt: skip
 def test_a_recording_that_cannot_be_computed_gets_one_line(
@@ -180,10 +194,10 @@ def test_a_snapshot_that_no_world_can_have_gets_one_line(
 ) -> None:
     recording = recordings.read(recorded)
     snapshot = Snapshot.from_bytes(recording.snapshot)
-    bodies = snapshot.tables["bodies.bodies"].copy()
-    bodies["shape_kind"] = 77
-    crafted = Snapshot(snapshot.settings, snapshot.tables | {"bodies.bodies": bodies}).to_bytes()
+    shapes = snapshot.tables["shapes.shapes"].copy()
+    shapes["kind"] = 77
+    crafted = Snapshot(snapshot.settings, snapshot.tables | {"shapes.shapes": shapes}).to_bytes()
     monkeypatch.setattr(recordings, "read", tampered(recording, snapshot=crafted))
     line = one_line(tumble("verify", recorded))
     assert "cannot be computed again" in line
-    assert "bodies.bodies" in line
+    assert "shapes.shapes" in line

@@ -13,10 +13,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from engine import SOLVERS, Box
+from engine import SHAPE_KINDS, Box, Circle
+from engine.settings import SettingInfo
 from sandbox import commands as ask
 from sandbox import simulation as simulations
 from sandbox.commands import PHYSICS, PhysicsCommand, command_from_dict
+from sandbox.commands.settings import CHANGEABLE
 from sandbox.scenes import SCENES, UnknownScene
 from sandbox.simulation import Simulation
 from tests.sandbox.watching import bits
@@ -28,18 +30,29 @@ def number(low: float, high: float) -> st.SearchStrategy[float]:
 
 PLACE = number(-1e5, 1e5)
 HAND = st.integers(0, 2**31)
+SIZE = number(0.05, 20)
+
+
+def setting_value(info: SettingInfo) -> st.SearchStrategy[Any]:
+    """Anything that this setting may be set to."""
+    if info.kind == "vector":
+        return st.tuples(number(-1000, 1000), number(-1000, 1000))
+    if info.kind == "whole":
+        return st.none() | st.integers(1, 1000)
+    if info.kind == "number":
+        return number(max(info.low, 1e-3) if info.low > 0.0 else 0.0, 1000)
+    return st.booleans() if info.kind == "switch" else st.sampled_from(info.choices)
+
+
+SETTINGS = st.sampled_from(list(CHANGEABLE.values()))
+ANY_SETTING = SETTINGS.flatmap(lambda info: st.builds(ask.Set, st.just(info.name), setting_value(info)))
 VALID: dict[type[PhysicsCommand], dict[str, st.SearchStrategy]] = {
-    ask.SetGravity: {"x": number(-1000, 1000), "y": number(-1000, 1000)},
-    ask.SetIterations: {"iterations": st.integers(1, 1000)},
-    ask.SetSwitch: {
-        "switch": st.sampled_from(["accumulate_impulses", "warm_starting", "position_correction"]),
-        "on": st.booleans(),
-    },
-    ask.SetSolver: {"solver": st.sampled_from(sorted(SOLVERS))},
     ask.Spawn: {
-        "shape": st.sampled_from(["box", "circle"]), "x": PLACE, "y": PLACE,
-        "width": number(0.05, 20), "height": number(0.05, 20), "mass": number(1e-3, 1e6), "friction": number(0, 10),
-        "count": st.integers(1, 200),
+        "shape": st.sampled_from(["box", "circle", "capsule", "polygon", "segment", "chain"]), "x": PLACE, "y": PLACE,
+        "width": SIZE, "height": SIZE, "mass": number(1e-3, 1e6), "friction": number(0, 10),
+        "count": st.integers(1, 200), "kind": st.just("static"), "angle": number(-1e3, 1e3),
+        "restitution": number(0, 1), "rolling_resistance": number(0, 1), "corners": st.integers(3, 8),
+        "rounding": number(0, 20),
     },
     ask.Bomb: {"x": PLACE, "y": PLACE, "angle": number(-1e3, 1e3), "vx": number(-1e3, 1e3), "vy": number(-1e3, 1e3),
                "spin": number(-1e3, 1e3)},
@@ -47,7 +60,13 @@ VALID: dict[type[PhysicsCommand], dict[str, st.SearchStrategy]] = {
     ask.MoveHand: {"hand": HAND, "x": PLACE, "y": PLACE},
     ask.Release: {"hand": HAND},
 }  # fmt: skip
-ANY_COMMAND = st.one_of([st.builds(kind, **fields) for kind, fields in VALID.items()])
+SOLID_SPAWN = VALID[ask.Spawn] | {
+    "shape": st.sampled_from(["box", "circle", "capsule", "polygon"]),
+    "kind": st.sampled_from(["static", "dynamic"]),
+}
+ANY_COMMAND = st.one_of(
+    ANY_SETTING, st.builds(ask.Spawn, **SOLID_SPAWN), *(st.builds(kind, **fields) for kind, fields in VALID.items())
+)
 
 NO_NUMBERS: list[Any] = [
     math.nan, math.inf, -math.inf, 1e308, -1e308, 10**400, "1", "", b"1", None, True, False, [1.0], (), {}, 1j,
@@ -58,12 +77,13 @@ NO_OPTIONS: list[Any] = ["", "Box", "nope", "precision", "gravity", 0, None, Tru
 NO_SWITCHES: list[Any] = [0, 1, 1.0, "true", "on", None, [], math.nan]
 
 WRONG_FOR_ALL: dict[str, list[Any]] = {
-    "shape": NO_OPTIONS, "switch": NO_OPTIONS, "solver": NO_OPTIONS, "on": NO_SWITCHES,
-    "hand": NO_WHOLE_NUMBERS, "iterations": [*NO_WHOLE_NUMBERS, 0, 1001], "count": [*NO_WHOLE_NUMBERS, 0, 201],
+    "shape": NO_OPTIONS, "kind": [*NO_OPTIONS, "kinematic"], "hand": NO_WHOLE_NUMBERS,
+    "count": [*NO_WHOLE_NUMBERS, 0, 201], "corners": [*NO_WHOLE_NUMBERS, 2, 9],
 }  # fmt: skip
 OUT_OF_RANGE: dict[str, list[Any]] = {
     "width": [0.0, -1.0, 0.0499, 20.001], "height": [0.0, -1.0, 0.0499, 20.001], "mass": [0.0, -1.0, 9e-4, 1.1e6],
     "friction": [-1e-9, 10.01], "angle": [-1001.0, 1001.0], "vx": [1001.0], "vy": [-1001.0], "spin": [1001.0],
+    "restitution": [-1e-9, 1.01], "rolling_resistance": [-1e-9, 1.01], "rounding": [-1e-9, 20.1],
 }  # fmt: skip
 FIELDS = [pytest.param(kind, field, id=f"{kind.name}-{field}") for kind, fields in VALID.items() for field in fields]
 
@@ -71,17 +91,13 @@ FIELDS = [pytest.param(kind, field, id=f"{kind.name}-{field}") for kind, fields 
 def bad_values(kind: type[PhysicsCommand], field: str) -> list[Any]:
     if field in WRONG_FOR_ALL:
         return WRONG_FOR_ALL[field]
-    coordinate = [1000.1, -1001] if kind is ask.SetGravity else [1.001e5, -1.001e5]
-    return [*NO_NUMBERS, *OUT_OF_RANGE.get(field, coordinate)]
+    return [*NO_NUMBERS, *OUT_OF_RANGE.get(field, [1.001e5, -1.001e5])]
 
 
 GOOD: dict[type[PhysicsCommand], dict[str, Any]] = {
-    ask.SetGravity: {"x": 0.0, "y": -3.0},
-    ask.SetIterations: {"iterations": 4},
-    ask.SetSwitch: {"switch": "warm_starting", "on": False},
-    ask.SetSolver: {"solver": "sequential_impulses"},
-    ask.Spawn: {"shape": "circle", "x": 1.0, "y": 9.0, "width": 0.5, "height": 1.0, "mass": 2.0, "friction": 0.1,
-                "count": 5},
+    ask.Spawn: {"shape": "polygon", "x": 1.0, "y": 9.0, "width": 0.5, "height": 1.0, "mass": 2.0, "friction": 0.1,
+                "count": 5, "kind": "dynamic", "angle": 0.5, "restitution": 0.5, "rolling_resistance": 0.1,
+                "corners": 6, "rounding": 0.1},
     ask.Bomb: {"x": -3.0, "y": 15.0, "angle": 0.5, "vx": 4.0, "vy": -20.0, "spin": 3.0},
     ask.Grab: {"hand": 1, "x": 0.0, "y": 4.0},
     ask.MoveHand: {"hand": 1, "x": 2.0, "y": 5.0},
@@ -90,8 +106,8 @@ GOOD: dict[type[PhysicsCommand], dict[str, Any]] = {
 
 
 def test_every_physics_command_is_tested_here() -> None:
-    assert {kind.name: kind for kind in VALID} == PHYSICS
-    assert {kind.name: kind for kind in GOOD} == PHYSICS
+    assert {kind.name: kind for kind in (ask.Set, *VALID)} == PHYSICS
+    assert {kind.name: kind for kind in (ask.Set, *GOOD)} == PHYSICS
 
 
 # --- made, and made again from JSON -----------------------------------------------------------------------------------
@@ -126,11 +142,49 @@ def test_bad_value_is_refused_by_name(kind: type[PhysicsCommand], field: str) ->
             command_from_dict({"command": kind.name, **GOOD[kind], field: value})
 
 
+WRONG_SETTINGS: dict[str, list[Any]] = {
+    "gravity": [*NO_NUMBERS[:-2], (1.0,), (1.0, math.nan), (1000.1, 0.0), [0.0, -1001.0]], "wind": [(0.0, 1e9)],
+    "solver": NO_OPTIONS, "stiffness": NO_OPTIONS, "friction_mixing": NO_OPTIONS,
+    "iterations": [value for value in (*NO_WHOLE_NUMBERS, 0, 1001) if value is not None], "substeps": [0, 1001, 2.5],
+    "contact_hertz": [*NO_NUMBERS, 0.0, -1.0, 1001.0], "push_out_speed": [-1e-9, 1000.1],
+    "warm_starting": NO_SWITCHES, "recycling": NO_SWITCHES,
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("setting", WRONG_SETTINGS)
+def test_a_bad_value_of_a_setting_is_refused_by_its_name(setting: str) -> None:
+    for value in WRONG_SETTINGS[setting]:
+        with pytest.raises(ValueError, match=rf"^{setting} = (.|\n)*: must be ") as refusal:
+            ask.Set(setting, value)
+        assert len(str(refusal.value)) < 300
+
+
+@pytest.mark.parametrize("setting", ["precision", "name", "gravity_x", "", None, 3, [], True])
+def test_what_is_no_setting_is_refused(setting: Any) -> None:
+    with pytest.raises(ValueError, match=r"^setting = "):
+        ask.Set(setting, "single")
+
+
+@pytest.mark.parametrize(
+    ("older", "today"),
+    [
+        ({"command": "set_gravity", "x": 1.0, "y": -3.0}, ask.Set("gravity", (1.0, -3.0))),
+        ({"command": "set_iterations", "iterations": 7}, ask.Set("iterations", 7)),
+        ({"command": "set_switch", "switch": "warm_starting", "on": False}, ask.Set("warm_starting", False)),
+        ({"command": "set_solver", "solver": "soft_step"}, ask.Set("solver", "soft_step")),
+        ({"command": "spawn", "shape": "circle", "x": 1.0, "y": 2.0, "width": 0.5, "height": 1.0, "mass": 3.0,
+          "friction": 0.1, "count": 2}, ask.Spawn("circle", 1.0, 2.0, 0.5, 1.0, 3.0, 0.1, 2)),
+    ],
+)  # fmt: skip
+def test_commands_of_older_recordings_are_understood(older: dict[str, Any], today: PhysicsCommand) -> None:
+    assert command_from_dict(older) == today
+    with pytest.raises(ValueError, match=r"exactly|must be"):
+        command_from_dict({**older, "extra": 1})
+
+
 @pytest.mark.parametrize("kind", VALID)
 def test_ends_of_the_ranges_are_allowed(kind: type[PhysicsCommand]) -> None:
     ends = {"x": 1e5, "y": -1e5, "width": 0.05, "height": 20.0, "mass": 1e6, "friction": 0.0, "count": 200, "hand": 0}
-    if kind is ask.SetGravity:
-        ends |= {"x": 1000.0, "y": -1000.0}
     kind(**{field: ends.get(field, value) for field, value in GOOD[kind].items()})
 
 
@@ -182,9 +236,9 @@ def test_session_commands_are_checked_too() -> None:
 
 
 def test_a_command_cannot_be_changed() -> None:
-    command = ask.SetIterations(4)
+    command = ask.Release(4)
     with pytest.raises(AttributeError):
-        command.iterations = 5  # type: ignore[misc]
+        command.hand = 5  # type: ignore[misc]
 
 
 # --- applied ----------------------------------------------------------------------------------------------------------
@@ -198,15 +252,21 @@ def simulation() -> Simulation:
 
 
 def test_settings_are_set(simulation: Simulation) -> None:
-    for command in (ask.SetGravity(1.0, 2.5), ask.SetIterations(33), ask.SetSolver("sequential_impulses")):
+    for command in (ask.Set("gravity", (1.0, 2.5)), ask.Set("substeps", 6), ask.Set("stiffness", "fixed")):
         simulation.apply(command)
     settings = simulation.world.settings
-    assert (settings.gravity, settings.iterations, settings.solver) == ((1.0, 2.5), 33, "sequential_impulses")
-    for name in ask.SWITCHES:
-        simulation.apply(ask.SetSwitch(name, False))
-        assert getattr(simulation.world.settings, name) is False
-        simulation.apply(ask.SetSwitch(name, True))
-        assert getattr(simulation.world.settings, name) is True
+    assert (settings.gravity, settings.substeps, settings.stiffness) == ((1.0, 2.5), 6, "fixed")
+    simulation.apply(ask.Set("solver", "sequential_impulses"))
+    simulation.apply(ask.Set("iterations", 33))
+    assert (simulation.world.solver, simulation.world.iterations) == ("sequential_impulses", 33)
+    simulation.apply(ask.Set("iterations", None))
+    assert simulation.world.iterations == 10, "the solver's own"
+    with pytest.raises(ValueError, match=r"^substeps = 4: must be 1 where the solver is"):
+        simulation.apply(ask.Set("substeps", 4))
+    for name in ("warm_starting", "recycling"):
+        for value in (False, True):
+            simulation.apply(ask.Set(name, value))
+            assert getattr(simulation.world.settings, name) is value
 
 
 def test_spawns_boxes_side_by_side(simulation: Simulation) -> None:
@@ -229,11 +289,53 @@ def test_spawns_boxes_side_by_side(simulation: Simulation) -> None:
 def test_spawns_a_circle_of_that_diameter(simulation: Simulation) -> None:
     simulation.apply(ask.Spawn("circle", 2.0, 8.0, 0.5, 20.0))
     circle = simulation.world.bodies[-1]
-    assert circle.shape.radius == 0.25
+    assert circle.shape == Circle(0.25)
     assert circle.position == (2.0, 8.0)
     frame = simulation.frame()
     assert frame.shape_kinds[-1] == 1
     assert frame.sizes[-1].tolist() == [0.25, 0.0]
+
+
+def test_spawns_a_polygon_as_round_and_as_turned_as_asked(simulation: Simulation) -> None:
+    simulation.apply(ask.Spawn("polygon", 0.0, 8.0, 2.0, 1.0, angle=0.5, corners=6, rounding=0.1))
+    body = simulation.world.bodies[-1]
+    assert (len(body.shape.points), body.shape.radius, body.angle) == (6, 0.1, 0.5)
+    assert body.shape.extent == pytest.approx((2.0, 1.0))
+    simulation.apply(ask.Spawn("polygon", 4.0, 8.0, 2.0, 1.0, rounding=20.0))
+    assert simulation.world.bodies[-1].shape.extent == pytest.approx((2.0, 1.0)), "never larger than asked"
+
+
+@pytest.mark.parametrize("shape", ["segment", "chain"])
+def test_lines_are_static(simulation: Simulation, shape: str) -> None:
+    with pytest.raises(ValueError, match=f"kind = 'dynamic': must be 'static' for a {shape}"):
+        ask.Spawn(shape, 0.0, 8.0)
+    simulation.apply(ask.Spawn(shape, 0.0, 8.0, 3.0, 1.0, kind="static", friction=0.7, count=2))
+    assert [body.kind for body in simulation.world.bodies[2:]] == ["static"] * 2
+    assert simulation.world.bodies[-1].shapes[0].friction == 0.7
+
+
+def test_what_is_spawned_has_its_material_and_no_column_where_it_is_the_usual(simulation: Simulation) -> None:
+    simulation.apply(ask.Spawn("box", 2.0, 8.0))
+    assert {"restitution", "rolling resistance"}.isdisjoint(called_for(simulation))
+    simulation.apply(ask.Spawn("capsule", 2.0, 9.0, restitution=0.5, rolling_resistance=0.1))
+    shape = simulation.world.bodies[-1].shapes[0]
+    assert (shape.restitution, shape.rolling_resistance) == (0.5, 0.1)
+    assert {"restitution", "rolling resistance"} <= called_for(simulation)
+
+
+def called_for(simulation: Simulation) -> set[str]:
+    return {effect.name for effect in simulation.world.effects if effect.called_for}
+
+
+@pytest.mark.parametrize("shape", SHAPE_KINDS)
+@pytest.mark.parametrize("angle", [0.0, 0.6])
+def test_spawned_side_by_side_nothing_overlaps(simulation: Simulation, shape: str, angle: float) -> None:
+    kind = "static" if shape in ask.LINES else "dynamic"
+    simulation.apply(ask.Spawn(shape, 0.0, 9.0, 1.5, 0.5, angle=angle, kind=kind, count=12))
+    simulation.apply(ask.Set("broad_phase", "all_pairs"))
+    simulation.step()
+    touching = simulation.world.contact_records()
+    assert not [contact for contact in touching if contact["body1"] >= 2 and contact["separation"] < 0.0]
 
 
 def test_bomb_is_one_body_thrown_again_and_again(simulation: Simulation) -> None:

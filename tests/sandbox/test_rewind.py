@@ -44,7 +44,7 @@ def meaning(simulation: Simulation) -> tuple[Any, ...]:
 def test_goes_back_to_the_last_good_step(steps: int) -> None:
     simulation, history = lively(steps)
     good = meaning(simulation)
-    for command in (ask.SetGravity(1.0, 2.0), ask.Spawn("box", 0.0, 9.0, count=3), ask.Grab(3, 0.0, 9.0)):
+    for command in (ask.Set("gravity", (1.0, 2.0)), ask.Spawn("box", 0.0, 9.0, count=3), ask.Grab(3, 0.0, 9.0)):
         simulation.apply(command)  # given since: left out
         history.applied(command)
     simulation.world.bodies[-1].velocity = (LARGEST, 0.0)
@@ -70,11 +70,11 @@ def test_can_go_back_again_and_again() -> None:
     simulation, history = lively(30)
     good = meaning(simulation)
     for _ in range(3):
-        simulation.apply(ask.SetGravity(5.0, 5.0))
-        history.applied(ask.SetGravity(5.0, 5.0))
+        simulation.apply(ask.Set("gravity", (5.0, 5.0)))
+        history.applied(ask.Set("gravity", (5.0, 5.0)))
         history.go_back()
         assert meaning(simulation) == good
-    command = ask.SetGravity(5.0, 5.0)
+    command = ask.Set("gravity", (5.0, 5.0))
     simulation.apply(command)
     history.applied(command)
     simulation.step()
@@ -106,8 +106,8 @@ def test_an_older_state_is_better_than_none(monkeypatch: pytest.MonkeyPatch) -> 
 def test_keeps_no_more_than_since_the_last_snapshot() -> None:
     simulation, history = lively(1)
     for _ in range(3 * EVERY):
-        simulation.apply(ask.SetIterations(5))
-        history.applied(ask.SetIterations(5))
+        simulation.apply(ask.Set("iterations", 5))
+        history.applied(ask.Set("iterations", 5))
         simulation.step()
         history.stepped()
     assert len(history._since) <= EVERY

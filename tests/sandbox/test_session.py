@@ -127,7 +127,7 @@ def test_commands_are_obeyed_while_it_stands_still() -> None:
 
 
 def test_a_frame_carries_the_commands_before_its_step_and_no_others() -> None:
-    given = [ask.SetIterations(5), ask.Grab(1, 0.0, 4.0), ask.MoveHand(1, 2.0, 5.0)]
+    given = [ask.Set("iterations", 5), ask.Grab(1, 0.0, 4.0), ask.MoveHand(1, 2.0, 5.0)]
     with running(paused=True) as (session, watcher):
         for command in given:
             session.submit(command)
@@ -141,7 +141,7 @@ def test_a_frame_carries_the_commands_before_its_step_and_no_others() -> None:
 def test_reset_keeps_the_settings() -> None:
     with running("The Talk/Pyramid", paused=True, precision="double") as (session, watcher):
         start = watcher.frames[0]
-        for command in (ask.SetIterations(3), ask.SetGravity(1.0, -5.0), ask.SetSwitch("warm_starting", False)):
+        for command in (ask.Set("iterations", 3), ask.Set("gravity", (1.0, -5.0)), ask.Set("warm_starting", False)):
             session.submit(command)
         session.submit(ask.Bomb(0, 15, 0, 0, -20, 0))
         before = step_by_step(session, watcher, 5)
@@ -158,8 +158,8 @@ def test_reset_keeps_the_settings() -> None:
 
 def test_another_scene_brings_its_own_gravity_and_keeps_the_solvers_settings() -> None:
     with running("The Talk/Pyramid", paused=True) as (session, watcher):
-        session.submit(ask.SetIterations(3))
-        session.submit(ask.SetGravity(1.0, -5.0))
+        session.submit(ask.Set("iterations", 3))
+        session.submit(ask.Set("gravity", (1.0, -5.0)))
         session.submit(ask.Grab(1, -6.0, 0.75))
         session.submit(ask.LoadScene("The Talk/Dominos"))
         frame = watcher.wait(lambda frame: frame.scene == "The Talk/Dominos")

@@ -96,14 +96,14 @@ def test_standing_still_a_flood_does_not_fill_the_memory(monkeypatch: pytest.Mon
         step_by_step(session, watcher, 1)
         stepped = next(frame for frame in watcher.frames if frame.step == 1)
         assert len(stepped.commands) == 50
-        session.submit(ask.SetIterations(4))
+        session.submit(ask.Set("iterations", 4))
         watcher.wait(lambda frame: frame.settings.iterations == 4)
 
 
 @pytest.mark.parametrize("steps", [0, 4, 63])
 def test_a_failing_step_keeps_the_last_good_state_pauses_and_says_so(steps: int) -> None:
     with running("The Talk/Dominos", paused=True) as (session, watcher):
-        session.submit(ask.SetGravity(0.5, -9.0))
+        session.submit(ask.Set("gravity", (0.5, -9.0)))
         good = step_by_step(session, watcher, steps)
         session.submit(ask.Spawn("box", 0.0, 30.0))
         session.submit(PushTooHard())
@@ -149,7 +149,7 @@ def test_whatever_fails_in_a_step_is_taken_back(error: Exception, monkeypatch: p
     with running(paused=True) as (session, watcher):
         step_by_step(session, watcher, 5)
         monkeypatch.setattr(Simulation, "step", fails_once_half_way)
-        session.submit(ask.SetIterations(9))
+        session.submit(ask.Set("iterations", 9))
         session.submit(ask.Play())
         frame = watcher.wait(lambda frame: frame.status.failure)
         assert "made up" in frame.status.failure

@@ -85,7 +85,7 @@ def test_is_renamed_only_when_whole(recorded: tuple[Session, Watcher], tmp_path:
 
 def test_starts_with_all_that_the_first_step_depends_on(recorded: tuple[Session, Watcher]) -> None:
     session, watcher = recorded
-    session.submit(ask.SetIterations(7))
+    session.submit(ask.Set("iterations", 7))
     step_by_step(session, watcher, 2)
     session.submit(ask.Grab(3, 0.0, 4.0))
     session.submit(ask.StartRecording())

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from engine import Snapshot
+from engine import SHAPE_KINDS, Box, Capsule, Chain, Circle, Polygon, Snapshot
 from sandbox import commands as ask
 from sandbox.simulation import Simulation
 from tests.sandbox.watching import PRECISIONS, LivelyHands, bits, whole_frame
@@ -41,7 +41,7 @@ def test_a_command_a_step_later_gives_other_bits() -> None:
         simulation = Simulation("The Talk/Single Box")
         for step in range(10):
             if step == at:
-                simulation.apply(ask.SetGravity(1.0, -9.0))
+                simulation.apply(ask.Set("gravity", (1.0, -9.0)))
             simulation.step()
         hashes.append(simulation.world.state_hash())
     assert hashes[0] != hashes[1]
@@ -124,8 +124,9 @@ def test_frames_are_read_only_copies() -> None:
         simulation.step()
     frame = simulation.frame()
     arrays = {name: value for name, value in vars(frame).items() if isinstance(value, np.ndarray)}
-    assert {"serials", "body_kinds", "shape_kinds", "sizes", "positions", "angles", "velocities",
-            "angular_velocities", "contacts", "joints"} == set(arrays)  # fmt: skip
+    assert {"serials", "body_kinds", "positions", "angles", "velocities", "angular_velocities", "shape_serials",
+            "owners", "shape_kinds", "sizes", "places", "corner_counts", "corners", "bounds", "contacts", "joints",
+            } == set(arrays)  # fmt: skip
     kept = {name: value.tobytes() for name, value in arrays.items()}
     for value in arrays.values():
         with pytest.raises(ValueError, match="read-only"):
@@ -153,6 +154,57 @@ def test_a_frame_tells_what_there_is() -> None:
     assert all(0.0 <= value < 1000.0 for value in frame.stage_ms.values())
     assert frame.commands == ({"command": "release", "hand": 1},)
     assert frame.settings == world.settings
+
+
+def test_a_frame_has_the_pieces_of_every_shape_in_the_order_of_creation() -> None:
+    """Bodies and shapes were destroyed before, so that rows and indices differ."""
+    simulation = Simulation("The Talk/Single Box")
+    world = simulation.world
+    gone = world.create_body(Box(1, 1), position=(5, 5))
+    body = world.create_body(Capsule(1.0, 0.25), position=(2.0, 3.0), angle=np.pi / 2)
+    lost = body.add_shape(Box(9, 9))
+    body.add_shape(Polygon([(0, 0), (1, 0), (0, 1)], radius=0.1), offset=(0.5, 0.0), angle=np.pi / 2)
+    world.bodies[0].add_shape(Chain([(0, 0), (2, 0), (2, 2)]), offset=(0.0, 1.0))
+    gone.destroy()
+    lost.destroy()
+    world.create_body(Circle(0.5), position=(7, 7))
+    frame = simulation.frame()
+    kinds = [SHAPE_KINDS[kind] for kind in frame.shape_kinds]
+    assert kinds == ["box", "box", "capsule", "polygon", "chain", "chain", "circle"]
+    assert frame.serials[frame.owners].tolist() == [0, 1, 3, 3, 0, 0, 4]
+    assert frame.sizes.tolist() == [[100, 20], [1, 1], [1, 0.25], [0.1, 0], [2, 0], [2, 0], [0.5, 0]]
+    assert frame.places[:, 2].tolist() == pytest.approx([0, 0, 0, np.pi / 2, 0, np.pi / 2, 0])
+    assert frame.corner_counts.tolist() == [0, 0, 0, 3, 0, 0, 0]
+    assert sorted(frame.corners.tolist()) == [[0, 0], [0, 1], [1, 0]]
+    positions, angles = frame.shape_poses()
+    assert positions[[3, 5, 6]].tolist() == [pytest.approx(place) for place in ([2.0, 3.5], [2.0, -8.0], [7.0, 7.0])]
+    assert angles[3] == pytest.approx(np.pi)
+    simulation.step()
+    later = simulation.frame()
+    assert later.corners is frame.corners, "made once for all frames that have them"
+    low, high = later.bounds[:, :2], later.bounds[:, 2:]
+    assert np.all((low <= later.shape_poses()[0]) & (later.shape_poses()[0] <= high))
+    assert {effect.name: effect.called_for for effect in later.effects}["restitution"] is False
+
+
+def test_a_frame_notices_what_came_and_went_without_a_command() -> None:
+    """A corner's place in the engine's table is used again, so the order of the corners is not that of the table."""
+    simulation = Simulation("The Talk/Single Box")
+    world = simulation.world
+    square = world.create_body(Polygon([(0, 0), (1, 0), (1, 1), (0, 1)]), position=(3, 5))
+    world.create_body(Polygon([(0, 0), (2, 0), (0, 2)]), position=(6, 5))
+    assert simulation.frame().corner_counts.tolist() == [0, 0, 4, 3]
+    square.destroy()
+    assert simulation.frame().corner_counts.tolist() == [0, 0, 3]
+    world.create_body(Polygon([(0, 0), (1, 0), (2, 1), (1, 2), (0, 1)]), position=(9, 5))
+    frame = simulation.frame()
+    assert frame.corner_counts.tolist() == [0, 0, 3, 5]
+    assert frame.corners[:3].max() == 2.0
+    assert sorted(frame.corners[3:].tolist()) == [[0, 0], [0, 1], [1, 0], [1, 2], [2, 1]]
+    shape = world.bodies[1].add_shape(Circle(0.5), offset=(1.0, 0.0))
+    assert simulation.frame().owners.tolist() == [0, 1, 2, 3, 1]
+    shape.destroy()
+    assert simulation.frame().owners.tolist() == [0, 1, 2, 3]
 
 
 @pytest.mark.parametrize(

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from engine import Box, World
-from sandbox.lab.peers.protocol import CannotMirror, PeerError
+from sandbox.lab.peers.protocol import CannotMirror, PeerError, bias_factor, passes
 from sandbox.lab.timing import Times
 
 DRIVER = Path(__file__).with_name("box2d_lite_driver.cpp")
@@ -90,7 +90,7 @@ def scene_text(world: World, dt: float) -> str:
     """The world as the driver reads it. CannotMirror if there is something in it that Box2D Lite has not."""
     settings = world.settings
     switches = (settings.accumulate_impulses, settings.warm_starting, settings.position_correction)
-    lines = [_line("world", dt, *settings.gravity, settings.iterations, *map(int, switches))]
+    lines = [_line("world", dt, *settings.gravity, passes(world), *map(int, switches))]
     lines.append(_line("bodies", world.body_count))
     for body in world.bodies:
         if not isinstance(body.shape, Box):
@@ -105,7 +105,7 @@ def scene_text(world: World, dt: float) -> str:
         if not joint.collide_connected:
             raise CannotMirror(f"its joined bodies always collide, those of joint {joint.serial} do not")
         pair = (ranks[joint.body1.serial], ranks[joint.body2.serial])
-        lines.append(_line(*pair, *joint.anchors[0], joint.softness, joint.bias_factor))
+        lines.append(_line(*pair, *joint.anchors[0], joint.softness, bias_factor(joint)))
     return "".join(lines)
 
 

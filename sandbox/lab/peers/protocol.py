@@ -6,7 +6,8 @@ from typing import Protocol
 
 import numpy as np
 
-from engine import World
+from engine import SOLVERS, RevoluteJoint, World
+from engine.constants import JOINT_BIAS_FACTOR
 from sandbox.lab.timing import Times
 
 
@@ -43,3 +44,13 @@ class Peer(Protocol):
 
     def close(self) -> None:
         """Frees what it holds; it is not asked for worlds again."""
+
+
+def passes(world: World) -> int:
+    """Passes a step for an engine without substeps: ours, or the talk's ten where ours come in substeps."""
+    return world.iterations if world.solver == "sequential_impulses" else SOLVERS["sequential_impulses"].iterations
+
+
+def bias_factor(joint: RevoluteJoint) -> float:
+    """Part of a joint's separation that a step removes: the talk's where it has none of its own."""
+    return JOINT_BIAS_FACTOR if joint.bias_factor is None else joint.bias_factor

@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from engine import Body, Box, RevoluteJoint, World
+from engine import Body, Box, Circle, RevoluteJoint, World
 from engine.constants import BIAS_FACTOR, SLOP
-from sandbox.lab.peers.protocol import PeerError
+from sandbox.lab.peers.protocol import CannotMirror, PeerError, bias_factor, passes
 from sandbox.lab.timing import Times, time_steps
 
 
@@ -42,7 +42,7 @@ class PymunkWorld:
         self.dt = dt
         self.space = pymunk.Space()
         self.space.gravity = tuple(world.gravity)
-        self.space.iterations = world.iterations
+        self.space.iterations = passes(world)
         self.space.sleep_time_threshold = math.inf
         self.space.collision_slop = SLOP
         self.space.collision_bias = _left_after_a_second(BIAS_FACTOR if world.position_correction else 0.0, dt)
@@ -68,11 +68,14 @@ class PymunkWorld:
         if not static:
             copy.velocity = tuple(body.velocity)
             copy.angular_velocity = body.angular_velocity
+        ours = body.shape if len(body.shapes) == 1 and body.center == body.position else None
         shape: Any
-        if isinstance(body.shape, Box):
-            shape = pymunk.Poly.create_box(copy, (body.shape.width, body.shape.height))
+        if isinstance(ours, Box):
+            shape = pymunk.Poly.create_box(copy, (ours.width, ours.height))
+        elif isinstance(ours, Circle):
+            shape = pymunk.Circle(copy, ours.radius)
         else:
-            shape = pymunk.Circle(copy, body.shape.radius)
+            raise CannotMirror(f"only bodies of one box or one circle are copied, body {body.serial} is none")
         shape.friction = math.sqrt(body.friction)  # a pair rubs with the product there, with its square root here
         self.space.add(copy, shape)
         return copy
@@ -83,7 +86,7 @@ class PymunkWorld:
         copy = pymunk.PivotJoint(
             body1, body2, body1.world_to_local(tuple(anchor1)), body2.world_to_local(tuple(anchor2))
         )
-        copy.error_bias = _left_after_a_second(joint.bias_factor, dt=self.dt)
+        copy.error_bias = _left_after_a_second(bias_factor(joint), dt=self.dt)
         copy.collide_bodies = joint.collide_connected
         self.space.add(copy)
 

@@ -18,7 +18,7 @@ def test_every_box_stands_above_the_ground(base: int) -> None:
     world = pyramid(base).make()
     ground, *boxes = world.bodies
     assert len(boxes) == base * (base + 1) // 2
-    assert np.abs(world.positions[1:, 0]).max() + 0.5 < ground.shape.half_extents[0]
+    assert np.abs(world.positions[1:, 0]).max() + 0.5 < 0.5 * ground.shape.extent[0]
 
 
 @pytest.mark.parametrize("base", [base for base in BASES if base > 12])

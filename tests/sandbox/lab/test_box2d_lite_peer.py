@@ -21,7 +21,7 @@ def numbers(line: str) -> list[float]:
 
 
 def test_scene_text_has_every_body_and_joint() -> None:
-    world = find_scene("The Talk/Dominos").make()
+    world = find_scene("The Talk/Dominos").make(solver="sequential_impulses")
     text = scene_text(world, DT).splitlines()
     assert numbers(text[0]) == [DT, 0.0, -10.0, 10.0, 1.0, 1.0, 1.0]
     assert text[1] == f"bodies {world.body_count}"
@@ -35,7 +35,7 @@ def test_scene_text_has_every_body_and_joint() -> None:
 
 
 def test_bodies_are_numbered_as_they_stand() -> None:
-    world = World()
+    world = World(solver="sequential_impulses")
     gone, *kept = (world.create_body(Box(1, 1), position=(3 * i, 0)) for i in range(3))
     gone.destroy()
     world.create_joint_revolute(*kept, anchor=(4.5, 0))
@@ -43,14 +43,14 @@ def test_bodies_are_numbered_as_they_stand() -> None:
 
 
 def test_switches_are_told() -> None:
-    world = World(warm_starting=False)
+    world = World(solver="sequential_impulses", warm_starting=False)
     assert scene_text(world, DT).splitlines()[0].endswith(" 10 1 0 1")
 
 
 def test_what_it_has_not_is_refused() -> None:
     with pytest.raises(CannotMirror, match="it has boxes only, body 5 is a circle"):
         scene_text(find_scene("Circles").make(), DT)
-    world = World()
+    world = World(solver="sequential_impulses")
     bodies = [world.create_body(Box(1, 1)) for _ in range(2)]
     world.create_joint_revolute(*bodies, anchor=(0, 0), collide_connected=False)
     with pytest.raises(CannotMirror, match="those of joint 0 do not"):

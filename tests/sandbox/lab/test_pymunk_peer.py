@@ -18,7 +18,7 @@ DT = 1 / 60
 
 
 def mirror(scene: str) -> tuple[World, PymunkWorld]:
-    world = find_scene(scene).make()
+    world = find_scene(scene).make(solver="sequential_impulses")
     return world, Pymunk().mirror(world, DT)
 
 
@@ -38,14 +38,14 @@ def test_bodies_are_the_same(scene: str) -> None:
 
 
 def test_space_has_the_worlds_settings() -> None:
-    world = World(gravity=(1.0, -3.0), iterations=7)
+    world = World(solver="sequential_impulses", gravity=(1.0, -3.0), iterations=7)
     space = Pymunk().mirror(world, DT).space
     assert (tuple(space.gravity), space.iterations) == ((1.0, -3.0), 7)
     assert math.isinf(space.sleep_time_threshold)
 
 
 def test_shapes_have_the_same_size_and_friction() -> None:
-    world = World()
+    world = World(solver="sequential_impulses")
     bodies = [world.create_body(Box(2, 1), friction=0.3), world.create_body(Circle(0.7), friction=0.6)]
     box, circle = (next(iter(body.shapes)) for body in Pymunk().mirror(world, DT).bodies)
     assert (box.area, circle.area) == (pytest.approx(2.0), pytest.approx(math.pi * 0.49))
@@ -67,7 +67,7 @@ def test_a_pendulum_keeps_to_its_anchor() -> None:
 
 
 def test_joined_bodies_collide_only_if_ours_do() -> None:
-    world = World()
+    world = World(solver="sequential_impulses")
     bodies = [world.create_body(Box(1, 1), position=(x, 0)) for x in (0.0, 0.5, 1.0)]
     world.create_joint_revolute(bodies[0], bodies[1], anchor=(0, 0))
     world.create_joint_revolute(bodies[1], bodies[2], anchor=(1, 0), collide_connected=False)

@@ -1,0 +1,176 @@
+"""Closed forms: what an exact simulation would give, and what symplectic Euler gives instead.
+
+The engine moves bodies by symplectic Euler: v += a h, then x += v h. Its error in simple motions is known too, so that
+a measured error is told apart from a mistake. h is the time of one integration: dt / substeps.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from itertools import pairwise
+
+import numpy as np
+
+# --- flight -----------------------------------------------------------------------------------------------------------
+
+
+def flight(y: float, speed: float, gravity: float, time: float) -> float:
+    """Height of a body thrown upwards, y + v t - g t^2 / 2 [m]."""
+    return y + speed * time - 0.5 * gravity * time * time
+
+
+def flight_lag(gravity: float, h: float, time: float) -> float:
+    """How far symplectic Euler is below the parabola, exactly g h t / 2 [m]: a sum instead of an integral."""
+    return 0.5 * gravity * h * time
+
+
+def apex(height: float, restitution: float, bounces: int = 1) -> float:
+    """Height that a ball dropped from `height` reaches after some bounces, e^(2n) h [m]."""
+    return restitution ** (2 * bounces) * height
+
+
+# --- friction ---------------------------------------------------------------------------------------------------------
+
+
+def stopping_distance(speed: float, friction: float, gravity: float) -> float:
+    """How far a body slides, v^2 / (2 mu g) [m]."""
+    return speed * speed / (2.0 * friction * gravity)
+
+
+def stopping_lag(speed: float, h: float) -> float:
+    """How much earlier symplectic Euler stops, v h / 2 [m]: each h is travelled with the speed of its end."""
+    return 0.5 * speed * h
+
+
+def slope_acceleration(angle: float, friction: float, gravity: float) -> float:
+    """Of a body on a slope, g (sin a - mu cos a), 0 if it sticks [m/s^2]."""
+    return max(gravity * (math.sin(angle) - friction * math.cos(angle)), 0.0)
+
+
+def friction_seen(angle: float, distance: float, gravity: float, time: float) -> float:
+    """The friction coefficient of a body that slid so far down a slope from rest: tan a - 2 s / (g t^2 cos a)."""
+    return math.tan(angle) - 2.0 * distance / (gravity * time * time * math.cos(angle))
+
+
+def rolling_distance(speed: float, resistance: float, radius: float, gravity: float) -> float:
+    """How far a rolling disc gets [m]. A torque of c m g against it, c the rolling resistance [m], slows it by
+    a = c m g r / (I + m r^2) = 2 c g / (3 r), so v^2 / (2 a) = 3 r v^2 / (4 c g).
+    """
+    return 0.75 * radius * speed * speed / (resistance * gravity)
+
+
+# --- swinging and circling --------------------------------------------------------------------------------------------
+
+
+def arithmetic_geometric_mean(a: float, b: float) -> float:
+    """The common limit of a, b = (a + b) / 2, sqrt(a b), for positive numbers."""
+    for _ in range(60):  # the number of correct digits doubles with each; the bound is for a and b apart by rounding
+        if abs(a - b) <= 1e-15 * a:
+            break
+        a, b = 0.5 * (a + b), math.sqrt(a * b)
+    return a
+
+
+def pendulum_period(inertia: float, mass: float, distance: float, gravity: float, amplitude: float) -> float:
+    """Of a rigid pendulum at any amplitude below pi, 2 pi sqrt(I / (m g d)) / AGM(1, cos(amplitude / 2)) [s].
+
+    inertia: about the pivot [kg m^2]; distance: from there to the centre of mass [m].
+    """
+    small = 2.0 * math.pi * math.sqrt(inertia / (mass * gravity * distance))
+    return small / arithmetic_geometric_mean(1.0, math.cos(0.5 * amplitude))
+
+
+def orbit_speed(attraction: float, radius: float) -> float:
+    """Of a circular orbit about a point that pulls with attraction / r^2, sqrt(attraction / r) [m/s]."""
+    return math.sqrt(attraction / radius)
+
+
+def orbit_wobble(attraction: float, radius: float, h: float) -> float:
+    """How far symplectic Euler's circular orbit leaves the circle, r w h / 2 to first order [m].
+
+    Its velocity lives half an h later than its position, so that the start has an inward speed of w^2 r h / 2: an
+    ellipse of eccentricity w h / 2.
+    """
+    return 0.5 * orbit_speed(attraction, radius) * h
+
+
+def levitation(count: int, strength: float) -> np.ndarray:
+    """(count,) heights at which magnets float above one another, on one that is fixed at 0 [m].
+
+    All are alike and push each other by strength / d^2 in units of their weight, every pair of them. Newton's method on
+    sum_j s / (y_i - y_j)^2 (+ of those below, - of those above) = 1.
+    """
+    heights = math.sqrt(strength * count) * np.arange(1.0, count + 1.0)
+    for _ in range(100):
+        all_heights = np.append(0.0, heights)
+        apart = heights[:, None] - all_heights[None, :]
+        apart[np.arange(count), np.arange(1, count + 1)] = np.inf
+        balance = np.sum(np.sign(apart) * strength / apart**2, axis=1) - 1.0
+        slopes = -2.0 * strength / np.abs(apart) ** 3  # of each push with the own height; with the other's the opposite
+        jacobian = np.diag(slopes.sum(axis=1)) - slopes[:, 1:]
+        change = np.linalg.solve(jacobian, balance)
+        # not past a neighbour: at most half of the least gap
+        step = min(1.0, 0.5 * float(np.diff(all_heights).min()) / float(np.abs(change).max() + 1e-300))
+        heights = heights - step * change
+    return heights
+
+
+# --- media ------------------------------------------------------------------------------------------------------------
+
+
+def damped(value: float, rate: float, time: float) -> float:
+    """What is left of a speed under linear or angular damping, v e^(-c t)."""
+    return value * math.exp(-rate * time)
+
+
+def terminal_speed(mass: float, gravity: float, drag: float) -> float:
+    """Where drag k v^2 carries the weight, sqrt(m g / k) [m/s]."""
+    return math.sqrt(mass * gravity / drag)
+
+
+def blown_speed(wind: float, drag: float, mass: float, time: float) -> float:
+    """Of a free body that starts at rest in wind, W - W / (1 + k W t / m), from du/dt = -k u^2 / m, u = W - v [m/s]."""
+    return wind - wind / (1.0 + drag * wind * time / mass)
+
+
+# --- rest -------------------------------------------------------------------------------------------------------------
+
+
+def loads(masses: Sequence[float], gravity: float) -> list[float]:
+    """The force on each of a stack's contacts from below upwards: the weight above it [N]."""
+    return [gravity * sum(masses[k:]) for k in range(len(masses))]
+
+
+def hanging_bridge(planks: int, length: float, mass: float, stiffness: float, span: float, gravity: float) -> float:
+    """How far the middle of a chain of rigid planks on springs hangs below its ends [m].
+
+    length: of a plank, from joint to joint [m]; stiffness: of each of the planks + 1 joints [N/m]; span: between the
+    ends [m]. Joint j pulls with (H, V_j), V_j being half the weight less that of j planks; a plank hangs along the mean
+    of the pulls at its ends, and a joint gives way by its pull / stiffness. What is left is to find the H that spans
+    the span.
+    """
+    pulls = [0.5 * planks * mass * gravity - j * mass * gravity for j in range(planks + 1)]
+    slopes = [0.5 * (left + right) for left, right in pairwise(pulls)]
+
+    def reach(horizontal: float) -> float:
+        along = sum(length * horizontal / math.hypot(horizontal, slope) for slope in slopes)
+        return along + (planks + 1) * horizontal / stiffness
+
+    low, high = 0.0, stiffness * span
+    for _ in range(100):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if reach(middle) < span else (low, middle)
+    half = (planks - 1) // 2
+    drop = sum(pull / stiffness for pull in pulls[: half + 1])
+    return drop + sum(length * slope / math.hypot(low, slope) for slope in slopes[:half])
+
+
+def buckling_height(hertz: float, gravity: float = 10.0, width: float = 1.0, height: float = 1.0) -> float:
+    """Number of boxes at which a column on soft contacts buckles under its own weight, if nothing freezes its contacts.
+
+    Greenhill's self-buckling, n^3 L^3 q = 7.837 E I, with a pair's tilt stiffness k (w / 2)^2 for E I / L, the weight
+    m g / L for q, and the contact stiffness k = 0.4 m w0^2 of square boxes (sandbox/lab/sag.py).
+    """
+    w0 = 2.0 * math.pi * hertz
+    return (0.7837 * w0 * w0 * width * width / (gravity * height)) ** (1.0 / 3.0)

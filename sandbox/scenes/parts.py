@@ -1,0 +1,37 @@
+"""What several scenes are built of, and how a body is found again."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+
+from engine import Body, Box, World
+from sandbox.lab.sag import MARGIN
+
+ROUGH = 0.6  # friction of what shall stand
+GRAVITY = 10.0  # of a world, unless a scene says otherwise [m/s^2]
+
+Predict = Callable[[World, float], float]
+
+
+def add_floor(world: World, width: float, friction: float = ROUGH, x: float = 0.0, y: float = 0.0) -> Body:
+    """A static box whose top is at y [m]."""
+    return world.create_body(Box(width, 2.0), position=(x, y - 1.0), kind="static", friction=friction)
+
+
+def and_a_fifth(predicted: Predict) -> Predict:
+    """What may be at most, where so much is predicted."""
+    return lambda world, dt: MARGIN * predicted(world, dt)
+
+
+def distance_from(world: World, index: int, x: float, y: float) -> float:
+    """How far a body, by its number of creation, is from a point [m]."""
+    return math.dist(world.positions[index], (x, y))
+
+
+def moved(world: World, index: int, places: np.ndarray) -> float:
+    """The farthest that bodies are from (N, 2) places [m]; index: of the first of them."""
+    away = world.positions[index : index + len(places)] - places
+    return float(np.hypot(away[:, 0], away[:, 1]).max())
