@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from engine import BODY_KINDS
+
 BACKGROUND = (17, 20, 26)
 STATIC = (74, 84, 99)  # slate: what never moves stays in the back
+KINEMATIC = (150, 158, 170)  # lighter: what moves, but is moved by nothing
 BODIES = np.array(  # moving bodies by serial
     [
         (106, 153, 201),  # steel blue
@@ -29,8 +32,14 @@ COUNTS = ((120, 178, 148), (255, 221, 128), (186, 198, 214))  # bodies, contacts
 STAGES = np.concatenate([BODIES, BODIES // 2 + 100])  # time of each stage, in the order of the step
 
 
-def body_colors(serials: np.ndarray, static: np.ndarray) -> np.ndarray:
-    """RGB of each body, (N, 3) uint8; `static` says which never move, (N,) bool."""
+def body_colors(serials: np.ndarray, body_kinds: np.ndarray) -> np.ndarray:
+    """RGB of each body, (N, 3) uint8."""
     colors = BODIES[np.asarray(serials, np.int64) % len(BODIES)]
-    colors[static] = STATIC
+    for kind, color in (("static", STATIC), ("kinematic", KINEMATIC)):
+        colors[body_kinds == BODY_KINDS.index(kind)] = color
     return colors
+
+
+def faded(colors: np.ndarray) -> np.ndarray:
+    """As a translucent fill looks on the background."""
+    return np.asarray(0.6 * colors + 0.4 * np.array(BACKGROUND)).astype(np.uint8)

@@ -10,10 +10,11 @@ import numpy as np
 import pyarrow as pa
 
 from recordings import schema
+from recordings.checks import check_steps, whole_content
+from recordings.older import upgraded
 from recordings.recording import Recording, contiguous
 from recordings.rrd import Chunk, is_finished, read_chunks
 from recordings.schema import RecordingError
-from recordings.shot import checksum
 from recordings.start import parse_start
 from recordings.stored_table import StoredTable, gather
 
@@ -30,16 +31,22 @@ def read(path: Path | str) -> Recording:
     chunks, finished = _content(path)
     start, snapshot = parse_start(path, chunks[schema.START])
     commands = _commands(path, chunks[schema.COMMANDS])
-    tables = {table.path: gather(path, table, chunks[table.path]) for table in schema.TABLES}
+    on_change = (schema.ROSTER_1,) if start["schema"] == 1 else schema.ON_CHANGE
+    tables = {table.path: gather(path, table, chunks[table.path]) for table in (*schema.EVERY_STEP, *on_change)}
     stored_steps = _whole_steps(path, tables, start["step"])
     closed = _is_closed(path, chunks[schema.END], stored_steps)
-    _check_steps(path, tables, commands)
+    if start["schema"] == 1:
+        check_steps(path, tables, commands, tables[schema.ROSTER.path])
+        tables |= upgraded(tables[schema.ROSTER.path])
+    else:
+        check_steps(path, tables, commands, whole_content(path, tables))
     numbers = tables[schema.STEPS.path].rows[1:]
     return Recording(
         path=path,
         whole=closed and finished,
         scene=start["scene"],
         version=start["version"],
+        schema=start["schema"],
         dt=start["dt"],
         start_step=start["step"],
         start_time=start["time"],
@@ -83,7 +90,7 @@ def _commands(path: Path, chunks: list[Chunk]) -> dict[int, list[str]]:
 
 
 def _whole_steps(path: Path, tables: dict[str, StoredTable], start_step: int) -> np.ndarray:
-    """The steps that every table has; the rest, which a kill cut off, is dropped from the tables."""
+    """The steps that every table has; the rest, which a kill cut off, is dropped from all tables."""
     counts = []
     for table in schema.EVERY_STEP:
         steps = tables[table.path].steps
@@ -92,7 +99,12 @@ def _whole_steps(path: Path, tables: dict[str, StoredTable], start_step: int) ->
         counts.append(len(steps))
     for table in schema.EVERY_STEP:
         tables[table.path] = tables[table.path].first(min(counts))
-    return tables[schema.STEPS.path].steps
+    steps = tables[schema.STEPS.path].steps
+    for table in schema.ON_CHANGE:
+        if table.path in tables:
+            begun = tables[table.path]
+            tables[table.path] = begun.first(int(np.searchsorted(begun.steps, steps[-1], "right")) if len(steps) else 0)
+    return steps
 
 
 def _is_closed(path: Path, chunks: list[Chunk], steps: np.ndarray) -> bool:
@@ -105,20 +117,3 @@ def _is_closed(path: Path, chunks: list[Chunk], steps: np.ndarray) -> bool:
         if not len(steps) or steps[-1] != last:
             raise RecordingError(f"{path}: damaged: its last steps are missing")
     return bool(chunks)
-
-
-def _check_steps(path: Path, tables: dict[str, StoredTable], commands: dict[int, list[str]]) -> None:
-    """Compares each step's checksum with its content, and drops the commands of steps that were cut off."""
-    steps = tables[schema.STEPS.path].steps
-    for step in [step for step in commands if not len(steps) or step > steps[-1]]:
-        del commands[step]
-    for step in map(int, steps):
-        parts = [tables[table.path].at(step) for table in schema.TABLES]
-        numbers = parts[3].copy()
-        if len(numbers) != 1 or len(parts[0]) != len(parts[4]):
-            raise RecordingError(f"{path}: damaged at step {step}")
-        expected = int(numbers["checksum"][0])
-        numbers["checksum"] = 0
-        parts[3] = numbers
-        if checksum(step, parts, commands.get(step, [])) != expected:
-            raise RecordingError(f"{path}: damaged at step {step}")

@@ -15,19 +15,24 @@ from recordings.stored_table import StoredTable
 
 @dataclass(frozen=True, slots=True)
 class State:
-    """One recorded step. N bodies in the order of creation; every array is read-only."""
+    """One recorded step. N bodies, and S pieces of their shapes, in the order of creation; every array is read-only."""
 
     step: int
     time: float  # [s]
     dt: float  # [s]
     serials: np.ndarray  # (N,) int64
     body_kinds: np.ndarray  # (N,) uint8, index into engine.BODY_KINDS
-    shape_kinds: np.ndarray  # (N,) uint8, index into engine.SHAPE_KINDS
-    sizes: np.ndarray  # (N, 2) float64 [m]
     positions: np.ndarray  # (N, 2) float64 [m]
     angles: np.ndarray  # (N,) float64 [rad]
     velocities: np.ndarray  # (N, 2) float64 [m/s]
     angular_velocities: np.ndarray  # (N,) float64 [rad/s]
+    shape_serials: np.ndarray  # (S,) int64
+    owners: np.ndarray  # (S,) int64, index of its body in the arrays above
+    shape_kinds: np.ndarray  # (S,) uint8, index into engine.SHAPE_KINDS
+    sizes: np.ndarray  # (S, 2) float64, as sandbox.frame.Frame.sizes has them [m]
+    places: np.ndarray  # (S, 3) float64, x, y [m] and angle [rad] in the body's frame
+    corner_counts: np.ndarray  # (S,) uint8, of polygons
+    corners: np.ndarray  # (sum of the counts, 2) float64, in the pieces' own frames [m]
     contacts: np.ndarray  # (C,) engine.CONTACT_RECORD
     joints: np.ndarray  # (J,) engine.JOINT_RECORD
 
@@ -40,6 +45,7 @@ class Recording:
     whole: bool  # the writer closed it, and nothing is missing
     scene: str
     version: str  # of the tumble that wrote it
+    schema: int  # version of the file's schema; of version 1 the world cannot be made again, but all of it be played
     dt: float  # [s], at the start
     start_step: int
     start_time: float  # [s]
@@ -70,19 +76,24 @@ class Recording:
         step = validate.whole(f"{self.path}: step", step, held[0], held[-1])
         numbers = self._tables[schema.STEPS.path].at(step)[0]
         bodies = self._tables[schema.BODIES.path].at(step).view(np.float64).reshape(-1, 6)
-        roster = self._tables[schema.ROSTER.path].at(step)
+        roster, pieces, corners = (self._tables[table.path].at(step) for table in schema.ON_CHANGE)
         return State(
             step=step,
             time=float(numbers["time"]),
             dt=float(numbers["dt"]),
             serials=contiguous(roster["serial"]),
             body_kinds=contiguous(roster["body_kind"]),
-            shape_kinds=contiguous(roster["shape_kind"]),
-            sizes=contiguous(np.column_stack([roster["size1"], roster["size2"]])),
             positions=contiguous(bodies[:, 0:2]),
             angles=contiguous(bodies[:, 2]),
             velocities=contiguous(bodies[:, 3:5]),
             angular_velocities=contiguous(bodies[:, 5]),
+            shape_serials=contiguous(pieces["serial"]),
+            owners=contiguous(np.searchsorted(roster["serial"], pieces["owner"])),
+            shape_kinds=contiguous(pieces["shape_kind"]),
+            sizes=contiguous(np.column_stack([pieces["size1"], pieces["size2"]])),
+            places=contiguous(np.column_stack([pieces["x"], pieces["y"], pieces["angle"]])),
+            corner_counts=contiguous(pieces["corner_count"]),
+            corners=contiguous(np.column_stack([corners["x"], corners["y"]])),
             contacts=self._tables[schema.CONTACTS.path].at(step),
             joints=self._tables[schema.JOINTS.path].at(step),
         )

@@ -1,4 +1,4 @@
-"""Which bodies there are: noticed when it changes, so that shapes are written once and not every step."""
+"""Which bodies and shapes there are: noticed when it changes, so that shapes are written once and not every step."""
 
 from __future__ import annotations
 
@@ -18,18 +18,18 @@ class Run(NamedTuple):
     changed: bool  # whether these are other bodies than before the run
 
 
+_CONTENT = (
+    "serials", "body_kinds", "shape_serials", "owners", "shape_kinds", "sizes", "places", "corner_counts", "corners",
+)  # fmt: skip
+
+
 def same_bodies(a: Shot, b: Shot) -> bool:
     """Whether both shots have the same bodies with the same shapes, in the same order."""
-    return (
-        _same(a.serials, b.serials)
-        and _same(a.body_kinds, b.body_kinds)
-        and _same(a.shape_kinds, b.shape_kinds)
-        and _same(a.sizes, b.sizes)
-    )
+    return all(_same(getattr(a, name), getattr(b, name)) for name in _CONTENT)
 
 
 def runs(previous: Shot | None, shots: list[Shot]) -> Iterator[Run]:
-    """Cuts a block where bodies come or go. `previous` is the last shot before the block."""
+    """Cuts a block where bodies or shapes come or go. `previous` is the last shot before the block."""
     first = 0
     changed = previous is None or not same_bodies(previous, shots[0])
     for index in range(1, len(shots)):

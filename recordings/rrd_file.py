@@ -17,8 +17,9 @@ from recordings.bodies_view import BodiesView
 from recordings.columns import Sheet, batch
 from recordings.diagnostics_view import MarksView, PlotsView, event_sheets
 from recordings.piped_file import PipedFile
+from recordings.protocols import StartLike
 from recordings.roster import Run, runs
-from recordings.schema import RecordingError, StartLike
+from recordings.schema import RecordingError
 from recordings.shot import Shot
 from recordings.start import property_batches, start_batches
 from recordings.state_sheets import StateSheets
@@ -33,7 +34,7 @@ class RrdFile:
         self._path = path
         self._previous: Shot | None = None
         self._state = StateSheets()
-        self._bodies = BodiesView()
+        self._bodies = BodiesView(start.view[2])
         self._marks = MarksView(start.view[2])
         self._plots = PlotsView()
         self._stage_count = 0

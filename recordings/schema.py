@@ -1,21 +1,20 @@
-"""What a recording holds and where: entity paths, tables with their columns, versions, and what is asked of a frame.
+"""What a recording holds and where: entity paths, tables with their columns, versions.
 
 A table is one entity of the file with one component a field; each step has one row of it, which holds one value a body
-(or contact, or joint). `ROSTER` and `COMMANDS` have a row only where something changed. Everything that is not under
-`/state` is there to look at.
+(or contact, or joint). The tables `ON_CHANGE`, and `COMMANDS`, have a row only where something changed. Everything that
+is not under `/state` is there to look at.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any, NamedTuple, Protocol
+from typing import NamedTuple
 
 import numpy as np
 
 from engine import CONTACT_RECORD, JOINT_RECORD
 
 APPLICATION = "tumble"  # rerun's application id: which program a file belongs to
-VERSION = 1  # of this schema; a reader refuses newer ones and knows all older ones
+VERSION = 2  # of this schema; a reader refuses newer ones and knows all older ones. 1: every body had one shape
 
 STEP_TIMELINE = "step"  # steps since the scene began
 TIME_TIMELINE = "sim_time"  # simulated time, rounded to ns: to look at (STEPS.time is exact)
@@ -86,11 +85,40 @@ ROSTER = Table(
         [
             ("serial", "i8"),
             ("body_kind", "u1"),  # index into engine.BODY_KINDS
-            ("shape_kind", "u1"),  # index into engine.SHAPE_KINDS
-            ("size1", "f8"),  # box: full width, circle: radius [m]
-            ("size2", "f8"),  # box: full height, circle: 0 [m]
         ]
     ),
+)
+PIECES = Table(
+    "/state/pieces",
+    "tumble.Pieces",
+    np.dtype(
+        [
+            ("serial", "i8"),
+            ("owner", "i8"),  # serial of its body
+            ("shape_kind", "u1"),  # index into engine.SHAPE_KINDS
+            ("size1", "f8"),  # as sandbox.frame.Frame.sizes has them [m]
+            ("size2", "f8"),
+            ("x", "f8"),  # place of its own frame in that of its body [m]
+            ("y", "f8"),
+            ("angle", "f8"),  # [rad]
+            ("corner_count", "u1"),  # of a polygon
+        ]
+    ),
+)
+CORNERS = Table(
+    "/state/corners",
+    "tumble.Corners",
+    np.dtype(
+        [
+            ("x", "f8"),  # in the piece's own frame; one polygon's after another's, in the order of the pieces [m]
+            ("y", "f8"),
+        ]
+    ),
+)
+ROSTER_1 = Table(  # of version 1
+    ROSTER.path,
+    ROSTER.archetype,
+    np.dtype([("serial", "i8"), ("body_kind", "u1"), ("shape_kind", "u1"), ("size1", "f8"), ("size2", "f8")]),
 )
 CONTACTS = Table("/state/contacts", "tumble.Contacts", _packed(CONTACT_RECORD))
 JOINTS = Table("/state/joints", "tumble.Joints", _packed(JOINT_RECORD))
@@ -113,86 +141,4 @@ STEPS = Table(
     ),
 )
 EVERY_STEP = (BODIES, CONTACTS, JOINTS, STEPS)  # tables with a row for each step
-TABLES = (*EVERY_STEP, ROSTER)
-
-
-class DiagnosticsLike(Protocol):
-    """engine.Diagnostics, by structure."""
-
-    @property
-    def kinetic_energy(self) -> float: ...
-    @property
-    def potential_energy(self) -> float: ...
-    @property
-    def momentum(self) -> tuple[float, float]: ...
-    @property
-    def angular_momentum(self) -> float: ...
-    @property
-    def max_penetration(self) -> float: ...
-    @property
-    def contact_count(self) -> int: ...
-
-
-class StateLike(Protocol):
-    """One step's state, recorded or computed again: what `compare` looks at. N bodies in the order of creation."""
-
-    @property
-    def step(self) -> int: ...
-    @property
-    def serials(self) -> np.ndarray: ...  # (N,) int64
-    @property
-    def positions(self) -> np.ndarray: ...  # (N, 2) [m]
-    @property
-    def angles(self) -> np.ndarray: ...  # (N,) [rad]
-    @property
-    def velocities(self) -> np.ndarray: ...  # (N, 2) [m/s]
-    @property
-    def angular_velocities(self) -> np.ndarray: ...  # (N,) [rad/s]
-    @property
-    def contacts(self) -> np.ndarray: ...  # (C,) CONTACT_RECORD
-    @property
-    def joints(self) -> np.ndarray: ...  # (J,) JOINT_RECORD
-
-
-class FrameLike(StateLike, Protocol):
-    """sandbox.frame.Frame, by structure: this package does not import the sandbox."""
-
-    @property
-    def time(self) -> float: ...  # [s]
-    @property
-    def dt(self) -> float: ...  # [s]
-    @property
-    def body_kinds(self) -> np.ndarray: ...  # (N,) uint8
-    @property
-    def shape_kinds(self) -> np.ndarray: ...  # (N,) uint8
-    @property
-    def sizes(self) -> np.ndarray: ...  # (N, 2) [m]
-    @property
-    def diagnostics(self) -> DiagnosticsLike: ...
-    @property
-    def stage_ms(self) -> Mapping[str, float]: ...
-    @property
-    def commands(self) -> tuple[dict[str, Any], ...]: ...
-
-
-class StartLike(Protocol):
-    """sandbox.recorder.RecordingStart, by structure: what a recording starts from."""
-
-    @property
-    def scene(self) -> str: ...
-    @property
-    def step(self) -> int: ...
-    @property
-    def time(self) -> float: ...  # [s]
-    @property
-    def dt(self) -> float: ...  # [s]
-    @property
-    def settings(self) -> Mapping[str, Any]: ...  # JSON-ready
-    @property
-    def snapshot(self) -> bytes: ...
-    @property
-    def hands(self) -> Mapping[str, Any]: ...  # JSON-ready
-    @property
-    def view(self) -> tuple[float, float, float]: ...  # centre x, y and height of what the camera shows [m]
-    @property
-    def version(self) -> str: ...
+ON_CHANGE = (ROSTER, PIECES, CORNERS)  # tables with a row where bodies or shapes came or went, all of them then

@@ -9,26 +9,32 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from recordings.schema import BODIES, CONTACTS, JOINTS, ROSTER, STEPS, FrameLike
+from recordings.protocols import FrameLike
+from recordings.schema import BODIES, CONTACTS, CORNERS, JOINTS, PIECES, ROSTER, STEPS
 
 _OVERHEAD = 1024  # bytes a shot takes beside its arrays, roughly
 
 
 @dataclass(frozen=True, slots=True)
 class Shot:
-    """A frame as the writer's thread gets it: nothing in it can change any more. N bodies."""
+    """A frame as the writer's thread gets it: nothing in it can change any more. N bodies of S pieces."""
 
     step: int
     time: float  # [s]
     dt: float  # [s]
     serials: np.ndarray  # (N,) int64
     body_kinds: np.ndarray  # (N,) uint8
-    shape_kinds: np.ndarray  # (N,) uint8
-    sizes: np.ndarray  # (N, 2) [m]
     positions: np.ndarray  # (N, 2) [m]
     angles: np.ndarray  # (N,) [rad]
     velocities: np.ndarray  # (N, 2) [m/s]
     angular_velocities: np.ndarray  # (N,) [rad/s]
+    shape_serials: np.ndarray  # (S,) int64
+    owners: np.ndarray  # (S,) int64, index of its body
+    shape_kinds: np.ndarray  # (S,) uint8
+    sizes: np.ndarray  # (S, 2) [m]
+    places: np.ndarray  # (S, 3) [m, m, rad]
+    corner_counts: np.ndarray  # (S,) uint8
+    corners: np.ndarray  # (sum of the counts, 2) [m]
     contacts: np.ndarray  # (C,)
     joints: np.ndarray  # (J,)
     diagnostics: tuple[float, float, float, float, float, float, int]  # in the order of STEPS
@@ -38,7 +44,8 @@ class Shot:
     @property
     def nbytes(self) -> int:
         """Memory that this shot holds, roughly [bytes]."""
-        return _OVERHEAD + 82 * len(self.serials) + self.contacts.nbytes + self.joints.nbytes
+        bodies, pieces = 57 * len(self.serials), 58 * len(self.shape_serials)
+        return _OVERHEAD + bodies + pieces + self.corners.nbytes + self.contacts.nbytes + self.joints.nbytes
 
 
 def take(frame: FrameLike) -> Shot:
@@ -50,12 +57,17 @@ def take(frame: FrameLike) -> Shot:
         dt=float(frame.dt),
         serials=_settled(frame.serials),
         body_kinds=_settled(frame.body_kinds),
-        shape_kinds=_settled(frame.shape_kinds),
-        sizes=_settled(frame.sizes),
         positions=_settled(frame.positions),
         angles=_settled(frame.angles),
         velocities=_settled(frame.velocities),
         angular_velocities=_settled(frame.angular_velocities),
+        shape_serials=_settled(frame.shape_serials),
+        owners=_settled(frame.owners),
+        shape_kinds=_settled(frame.shape_kinds),
+        sizes=_settled(frame.sizes),
+        places=_settled(frame.places),
+        corner_counts=_settled(frame.corner_counts),
+        corners=_settled(frame.corners),
         contacts=_settled(frame.contacts),
         joints=_settled(frame.joints),
         diagnostics=(
@@ -103,8 +115,24 @@ def joint_rows(shots: list[Shot]) -> np.ndarray:
 def roster_rows(shot: Shot) -> np.ndarray:
     """The ROSTER table of one shot, (N,)."""
     rows = np.empty(len(shot.serials), ROSTER.dtype)
-    rows["serial"], rows["body_kind"], rows["shape_kind"] = shot.serials, shot.body_kinds, shot.shape_kinds
-    rows["size1"], rows["size2"] = shot.sizes[:, 0], shot.sizes[:, 1]
+    rows["serial"], rows["body_kind"] = shot.serials, shot.body_kinds
+    return rows
+
+
+def piece_rows(shot: Shot) -> np.ndarray:
+    """The PIECES table of one shot, (S,)."""
+    rows = np.empty(len(shot.shape_serials), PIECES.dtype)
+    rows["serial"], rows["owner"] = shot.shape_serials, shot.serials[shot.owners]
+    rows["shape_kind"], rows["corner_count"] = shot.shape_kinds, shot.corner_counts
+    rows["size1"], rows["size2"] = shot.sizes.T
+    rows["x"], rows["y"], rows["angle"] = shot.places.T
+    return rows
+
+
+def corner_rows(shot: Shot) -> np.ndarray:
+    """The CORNERS table of one shot."""
+    rows = np.empty(len(shot.corners), CORNERS.dtype)
+    rows["x"], rows["y"] = shot.corners.T
     return rows
 
 
@@ -114,14 +142,27 @@ def step_rows(shots: list[Shot]) -> np.ndarray:
 
 
 def checksum(step: int, parts: Iterable[np.ndarray], commands: Iterable[str]) -> int:
-    """CRC-32 of one step: its number, its rows of every table in EVERY_STEP, then its roster and its commands.
+    """CRC-32 of one step: its number, its rows of every table in EVERY_STEP, then its content and its commands.
 
-    The STEPS row takes part with its checksum set to zero.
+    The STEPS row takes part with its checksum set to zero. The content is what `content_checksum` gives; in version 1
+    it was the roster itself.
     """
     value = zlib.crc32(step.to_bytes(8, "little", signed=True))
     for part in parts:
-        value = zlib.crc32(len(part).to_bytes(8, "little"), value)
-        value = zlib.crc32(part.view(np.uint8).data, value)
+        value = _more(value, part)
     for text in commands:
         value = zlib.crc32(text.encode(), value)
     return value
+
+
+def content_checksum(parts: Iterable[np.ndarray]) -> np.ndarray:
+    """(1,) uint32: CRC-32 of the rows of every table in ON_CHANGE, made once for all steps that have them."""
+    value = 0
+    for part in parts:
+        value = _more(value, part)
+    return np.array([value], np.uint32)
+
+
+def _more(value: int, part: np.ndarray) -> int:
+    value = zlib.crc32(len(part).to_bytes(8, "little"), value)
+    return zlib.crc32(part.view(np.uint8).data, value)

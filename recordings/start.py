@@ -13,8 +13,9 @@ import rerun as rr
 
 from recordings import schema
 from recordings.columns import batch
+from recordings.protocols import StartLike
 from recordings.rrd import Chunk
-from recordings.schema import RecordingError, StartLike
+from recordings.schema import RecordingError
 
 
 def start_batches(start: StartLike) -> list[rr.DescribedComponentBatch]:

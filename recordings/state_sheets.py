@@ -12,33 +12,51 @@ from recordings import schema
 from recordings.columns import Sheet, column, table_columns, time_columns
 from recordings.roster import Run
 from recordings.schema import Table
-from recordings.shot import Shot, body_rows, checksum, contact_rows, joint_rows, roster_rows, step_rows
+from recordings.shot import (
+    Shot,
+    body_rows,
+    checksum,
+    contact_rows,
+    content_checksum,
+    corner_rows,
+    joint_rows,
+    piece_rows,
+    roster_rows,
+    step_rows,
+)
 
 
 class StateSheets:
-    """Turns blocks into sheets; remembers which bodies there are."""
+    """Turns blocks into sheets; remembers what there is."""
 
     def __init__(self) -> None:
-        self._roster = np.empty(0, schema.ROSTER.dtype)
+        self._content = content_checksum(())
 
     def sheets(self, shots: list[Shot], every_run: list[Run]) -> Iterator[Sheet]:
-        """Rosters and commands first, where there are new ones; the checksums last."""
-        rosters: list[np.ndarray] = []
+        """Content and commands first, where there is something new; the checksums last."""
+        contents: list[np.ndarray] = []
+        new: list[tuple[Shot, list[np.ndarray]]] = []
         for run in every_run:
             if run.changed:
-                self._roster = roster_rows(run.shots[0])
-            rosters.extend([self._roster] * len(run.shots))
-        firsts = [run.first for run in every_run if run.changed]
-        if firsts:
-            new = [rosters[i] for i in firsts]
-            yield _table_sheet(schema.ROSTER, [shots[i] for i in firsts], np.concatenate(new), [len(r) for r in new])
+                new.append((run.shots[0], content_rows(run.shots[0])))
+                self._content = content_checksum(new[-1][1])
+            contents.extend([self._content] * len(run.shots))
+        if new:
+            firsts = [shot for shot, _ in new]
+            for table, *every in zip(schema.ON_CHANGE, *(rows for _, rows in new), strict=True):
+                yield _table_sheet(table, firsts, np.concatenate(every), [len(rows) for rows in every])
         commanded = [shot for shot in shots if shot.commands]
         if commanded:
             yield _commands_sheet(commanded)
-        yield from _every_step_sheets(shots, rosters)
+        yield from _every_step_sheets(shots, contents)
 
 
-def _every_step_sheets(shots: list[Shot], rosters: list[np.ndarray]) -> Iterator[Sheet]:
+def content_rows(shot: Shot) -> list[np.ndarray]:
+    """The rows of every table in ON_CHANGE."""
+    return [roster_rows(shot), piece_rows(shot), corner_rows(shot)]
+
+
+def _every_step_sheets(shots: list[Shot], contents: list[np.ndarray]) -> Iterator[Sheet]:
     """The tables that have a row for each step."""
     tables = [body_rows(shots), contact_rows(shots), joint_rows(shots), step_rows(shots)]
     lengths = [
@@ -50,7 +68,7 @@ def _every_step_sheets(shots: list[Shot], rosters: list[np.ndarray]) -> Iterator
     ends = [np.cumsum(of_table) for of_table in lengths]
     for i, shot in enumerate(shots):
         parts = [rows[end[i] - count[i] : end[i]] for rows, end, count in zip(tables, ends, lengths, strict=True)]
-        tables[-1]["checksum"][i] = checksum(shot.step, [*parts, rosters[i]], shot.commands)
+        tables[-1]["checksum"][i] = checksum(shot.step, [*parts, contents[i]], shot.commands)
     for table, rows, of_table in zip(schema.EVERY_STEP, tables, lengths, strict=True):
         yield _table_sheet(table, shots, rows, of_table)
 

@@ -7,8 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from recordings.protocols import StateLike
 from recordings.recording import Recording
-from recordings.schema import CONTACTS, JOINTS, StateLike
+from recordings.schema import CONTACTS, JOINTS
 
 _MISSING = "nothing"
 
@@ -58,6 +59,7 @@ def compare_states(recorded: StateLike, computed: StateLike) -> Difference | Non
         return Difference(step, None, "body count", len(serials), len(computed.serials))
     columns = [
         ("serial", serials, computed.serials),
+        ("kind", recorded.body_kinds, computed.body_kinds),
         ("x", recorded.positions[:, 0], computed.positions[:, 0]),
         ("y", recorded.positions[:, 1], computed.positions[:, 1]),
         ("angle", recorded.angles, computed.angles),
@@ -67,9 +69,35 @@ def compare_states(recorded: StateLike, computed: StateLike) -> Difference | Non
     ]
     return (
         _first_difference(step, serials, columns)
+        or _compare_pieces(recorded, computed)
         or _compare_records(step, "contact", recorded.contacts, computed.contacts, CONTACTS.dtype)
         or _compare_records(step, "joint", recorded.joints, computed.joints, JOINTS.dtype)
     )
+
+
+def _compare_pieces(recorded: StateLike, computed: StateLike) -> Difference | None:
+    """What the bodies look like. A difference is that of the piece's body."""
+    for noun, was, became in (
+        ("piece", recorded.shape_serials, computed.shape_serials),
+        ("corner", recorded.corners, computed.corners),
+    ):
+        if len(was) != len(became):
+            return Difference(recorded.step, None, f"{noun} count", len(was), len(became))
+    columns = [
+        ("piece serial", recorded.shape_serials, computed.shape_serials),
+        ("piece owner", recorded.owners, computed.owners),
+        ("piece kind", recorded.shape_kinds, computed.shape_kinds),
+        ("piece corner count", recorded.corner_counts, computed.corner_counts),
+    ]
+    for name, fields in (("sizes", ("size 1", "size 2")), ("places", ("place x", "place y", "place angle"))):
+        was, became = getattr(recorded, name), getattr(computed, name)
+        columns += [(f"piece {field}", was[:, k], became[:, k]) for k, field in enumerate(fields)]
+    owners = recorded.serials[recorded.owners]
+    found = _first_difference(recorded.step, owners, columns)
+    if found is not None:
+        return found
+    corners = [(f"corner {axis}", recorded.corners[:, k], computed.corners[:, k]) for k, axis in enumerate("xy")]
+    return _first_difference(recorded.step, np.repeat(owners, recorded.corner_counts), corners)
 
 
 def _compare_records(

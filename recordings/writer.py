@@ -7,8 +7,9 @@ import threading
 from pathlib import Path
 
 from recordings.mailbox import Mailbox
+from recordings.protocols import FrameLike, StartLike
 from recordings.rrd_file import RrdFile
-from recordings.schema import FrameLike, RecordingError, StartLike
+from recordings.schema import RecordingError
 from recordings.shot import take
 
 CLOSE_SECONDS = 60.0  # after which `close` gives up on the disk

@@ -2,6 +2,7 @@
 
 from web.app import App
 from web.listen import ListenError, PortInUse
+from web.panels.effects import Cost
 from web.replay import ReplayApp
 
-__all__ = ["App", "ListenError", "PortInUse", "ReplayApp"]
+__all__ = ["App", "Cost", "ListenError", "PortInUse", "ReplayApp"]

@@ -8,6 +8,7 @@ from sandbox.frame import Frame
 from sandbox.scenes import SCENES
 from web.page import Page
 from web.panels import PANELS, Desk, SpawnPanel
+from web.panels.effects import Measure
 from web.pointer import Pointer
 
 if TYPE_CHECKING:
@@ -21,14 +22,21 @@ DEFAULT_VIEW = (0.0, 5.0, 20.0)  # of a scene that is not in the list
 class App:
     """Serves a session at `url` until `close`. A Viewer: frames come in on the session's thread, and leave it at once.
 
+    measure_effects: gives what each effect of the running scene costs; without it there is no button for that.
     Raises web.ListenError (of which PortInUse is one) when it cannot have its address.
     """
 
-    def __init__(self, session: Session, host: str = DEFAULT_HOST, port: int = DEFAULT_PORT) -> None:
+    def __init__(
+        self,
+        session: Session,
+        host: str = DEFAULT_HOST,
+        port: int = DEFAULT_PORT,
+        measure_effects: Measure | None = None,
+    ) -> None:
         self._page = Page(_view_of, host, port)
         self.url = self._page.url
         self._closed = False
-        desk = Desk(self._page, session)
+        desk = Desk(self._page, session, measure_effects)
         panels = [kind(desk) for kind in PANELS]
         spawn = next(panel for panel in panels if isinstance(panel, SpawnPanel))
         pointer = Pointer(desk, self._page, spawn)

@@ -1,24 +1,25 @@
-"""The bodies: one batch of meshes for each kind of shape, whatever the number of bodies.
+"""The bodies: a few unit meshes, each a batch of as many copies as there are, whatever the number of bodies.
 
-Poses go out with every frame; sizes and colours only when bodies came or went.
+Poses go out with every frame; sizes, colours and outlines only when bodies or shapes came or went.
 """
 
 from __future__ import annotations
 
+from collections import defaultdict
+
 import numpy as np
 import viser
 
-from engine import BODY_KINDS, SHAPE_KINDS
+from engine import SHAPE_KINDS
 from sandbox.frame import Frame
-from web.shapes import SHAPE_LOOKS, Mesh, ShapeLook, square
+from web.batches import Batch, LooseMesh, Poses
+from web.parts import Loose, Part, Pieces, square_corners
+from web.shapes import SHAPE_LOOKS
 from web.stage import Layer, Stage
-from web.theme import BACKDROP, GRID, GRID_SECTION, RIM_TONE, body_colours, to_linear
+from web.theme import BACKDROP, GRID, GRID_SECTION, body_colours
 
-RIM_WIDTH = 0.0045  # of the view's height
-RIM_SHARE = 0.22  # at most this part of a body's smaller half extent, so that small bodies keep a face
 GRID_CELLS = (0.5, 1.0, 5.0, 10.0, 50.0, 100.0)  # m
 GRID_SIZE, BACKDROP_SIZE = 60.0, 200.0  # in view heights: beyond what one can zoom out to
-STATIC_BODY = BODY_KINDS.index("static")
 
 
 class Canvas:
@@ -26,10 +27,11 @@ class Canvas:
 
     def __init__(self, server: viser.ViserServer) -> None:
         self._scene = server.scene
-        self._batches = [ShapeBatch(server, kind) for kind in SHAPE_KINDS]
+        self._batches: dict[tuple[str, Layer], Batch] = {}
+        self._loose: dict[tuple[bytes, Layer], LooseMesh] = {}
         self._stage: Stage | None = None
         self._content = -1
-        self._serials = np.zeros(0, np.int64)
+        self._serials = self._shape_serials = np.zeros(0, np.int64)
         self._grid_shown = True
 
     def draw(self, frame: Frame, stage: Stage) -> None:
@@ -38,22 +40,64 @@ class Canvas:
             self._draw_backdrop(stage)
             self._draw_grid(stage)
             self._content = -1
-        # A recording's frames may all have the same content number, hence the look at the serials.
-        if frame.content != self._content or not np.array_equal(frame.serials, self._serials):
-            self._content, self._serials = frame.content, frame.serials
-            for kind, batch in enumerate(self._batches):
-                batch.select(frame, kind, stage)
-        for batch in self._batches:
-            batch.pose(frame)
+        if self._is_new(frame):
+            self._select(frame, stage)
+        poses = Poses.of(frame)
+        for batch in self._batches.values():
+            batch.pose(poses)
+        for mesh in self._loose.values():
+            mesh.pose(poses)
 
     def show_grid(self, shown: bool) -> None:
         self._grid_shown = shown
         if self._stage is not None:
             self._draw_grid(self._stage)
 
+    def _is_new(self, frame: Frame) -> bool:
+        """Whether bodies or shapes came or went. A recording's frames may all have the same content number."""
+        same = (
+            frame.content == self._content
+            and np.array_equal(frame.serials, self._serials)
+            and np.array_equal(frame.shape_serials, self._shape_serials)
+        )
+        self._content, self._serials, self._shape_serials = frame.content, frame.serials, frame.shape_serials
+        return not same
+
+    def _select(self, frame: Frame, stage: Stage) -> None:
+        """Takes up what there is to draw. Numbers may have changed, so poses must follow at once."""
+        colours = body_colours(frame.serials, frame.body_kinds)[frame.owners]
+        parts: dict[tuple[str, Layer], list[Part]] = defaultdict(list)
+        loose: list[Loose] = []
+        for kind, name in enumerate(SHAPE_KINDS):
+            members = np.flatnonzero(frame.shape_kinds == kind)
+            if not len(members):
+                continue
+            for part in SHAPE_LOOKS[name](Pieces(frame, members, stage.height)):
+                if isinstance(part, Loose):
+                    loose.append(part)
+                else:
+                    parts[part.mesh.name, part.layer].append(part)
+        for key in parts.keys() | self._batches.keys():
+            if key not in self._batches:
+                self._batches[key] = Batch(self._scene, parts[key][0].mesh, key[1])
+            self._batches[key].select(parts.get(key, []), colours, stage)
+        self._select_loose(loose, colours, stage)
+
+    def _select_loose(self, loose: list[Loose], colours: np.ndarray, stage: Stage) -> None:
+        """A mesh for each colour in which there are any."""
+        for mesh in self._loose.values():
+            mesh.clear()
+        for part in loose:
+            own = colours[part.pieces]
+            for colour in np.unique(own, axis=0):
+                key = colour.tobytes(), part.layer
+                if key not in self._loose:
+                    self._loose[key] = LooseMesh(self._scene, colour, part)
+                self._loose[key].select(part, (own == colour).all(axis=1), stage)
+
     def _draw_backdrop(self, stage: Stage) -> None:
         """A plain far larger than the view, in place of the page's own black."""
-        vertices, faces = square()
+        vertices, faces = square_corners()
         vertices = vertices * BACKDROP_SIZE * stage.height
         place = (0.0, 0.0, stage.z(Layer.BACKDROP))
         self._scene.add_mesh_simple(
@@ -81,59 +125,3 @@ class Canvas:
             position=(0.0, 0.0, stage.z(Layer.GRID)),
             visible=self._grid_shown,
         )
-
-
-class ShapeBatch:
-    """All bodies of one kind of shape: their rims, and their faces on top."""
-
-    def __init__(self, server: viser.ViserServer, kind: str) -> None:
-        self._look: ShapeLook = SHAPE_LOOKS[kind]
-        self._rim = _add_batch(server, f"/bodies/{kind}/rim", self._look.rim)
-        self._face = _add_batch(server, f"/bodies/{kind}/face", self._look.face)
-        self._members = np.zeros(0, np.int64)
-        self._z = (0.0, 0.0)
-
-    def select(self, frame: Frame, kind: int, stage: Stage) -> None:
-        """Take up the bodies of this kind. Their number may have changed, so their poses must follow at once."""
-        members = np.flatnonzero(frame.shape_kinds == kind)
-        self._members = members
-        self._z = (stage.z(Layer.RIM), stage.z(Layer.FACE))
-        outer = self._look.half_extents(frame.sizes[members])
-        rim = np.minimum(RIM_WIDTH * stage.height, RIM_SHARE * outer.min(axis=1, initial=np.inf))
-        self._rim.batched_scales = _scales(outer, stage)
-        self._face.batched_scales = _scales(outer - rim[:, None], stage)
-        colours = body_colours(frame.serials[members], frame.body_kinds[members] == STATIC_BODY)
-        self._face.batched_colors = to_linear(colours)
-        self._rim.batched_colors = to_linear(colours * RIM_TONE)
-
-    def pose(self, frame: Frame) -> None:
-        members = self._members
-        turns = np.zeros((len(members), 4), np.float32)
-        half = frame.angles[members] / 2.0
-        turns[:, 0], turns[:, 3] = np.cos(half), np.sin(half)
-        for handle, z in zip((self._rim, self._face), self._z, strict=True):
-            places = np.full((len(members), 3), z, np.float32)
-            places[:, :2] = frame.positions[members]
-            handle.batched_positions = places
-            handle.batched_wxyzs = turns
-
-
-def _scales(half_extents: np.ndarray, stage: Stage) -> np.ndarray:
-    scales = np.full((len(half_extents), 3), stage.gap, np.float32)
-    scales[:, :2] = half_extents
-    return scales
-
-
-def _add_batch(server: viser.ViserServer, name: str, mesh: Mesh) -> viser.BatchedMeshHandle:
-    return server.scene.add_batched_meshes_simple(
-        name,
-        *mesh,
-        batched_wxyzs=np.zeros((0, 4), np.float32),
-        batched_positions=np.zeros((0, 3), np.float32),
-        batched_scales=np.zeros((0, 3), np.float32),
-        batched_colors=np.zeros((0, 3), np.uint8),
-        lod="off",
-        side="double",
-        cast_shadow=False,
-        receive_shadow=False,
-    )

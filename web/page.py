@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 
 import viser
 
@@ -23,14 +23,14 @@ Update = Callable[[Frame], None]
 class Page:
     """Serves a view of frames. Nobody gets in before `open`, so nobody sees half a page."""
 
-    def __init__(self, view_of: ViewOf, host: str, port: int) -> None:
+    def __init__(self, view_of: ViewOf, host: str, port: int, overlays: Iterable[type[Overlay]] = OVERLAYS) -> None:
         self._view_of = view_of
         self.server, self._guard = start_server(host, port)
         self.url = page_url(host, self.server.get_port())
         apply_theme(self.server)
         self.gui.main_panel.dock_right()
         self.canvas = Canvas(self.server)
-        self.overlays: list[Overlay] = [kind(self.server.scene) for kind in OVERLAYS]
+        self.overlays: list[Overlay] = [kind(self.server.scene) for kind in overlays]
         self.camera = Camera(self.server)
         self.stage = Stage(0.0, 0.0, 20.0)
         self.listeners: list[Update] = []  # called with every frame that is drawn

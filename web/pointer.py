@@ -10,21 +10,19 @@ from dataclasses import dataclass
 import numpy as np
 import viser
 
-from engine import BODY_KINDS, SHAPE_KINDS
 from sandbox.commands import Grab, MoveHand, Release
 from sandbox.frame import Frame
+from web.hit import body_at, in_body, in_world
 from web.overlays.overlay import add_lines, lines
 from web.page import Page
 from web.panels.desk import Desk
 from web.panels.spawn import SpawnPanel
-from web.shapes import square
+from web.parts import square_corners
 from web.stage import Layer
 from web.theme import HAND
 
 PICK_PLANE = "/pick"
 PLANE_SIZE = 1e5  # m, half of it
-BOX, CIRCLE = SHAPE_KINDS.index("box"), SHAPE_KINDS.index("circle")
-DYNAMIC_BODY = BODY_KINDS.index("dynamic")
 
 Point = tuple[float, float]
 
@@ -91,7 +89,7 @@ class Pointer:
         index = None if frame is None else body_at(frame, x, y)
         if frame is None or index is None:
             return None
-        return Hand(int(frame.serials[index]), _to_body(frame, index, x, y), (x, y))
+        return Hand(int(frame.serials[index]), in_body(frame, index, x, y), (x, y))
 
     def _to_world(self, x: float, y: float) -> Point:
         origin = self._page.stage.origin
@@ -104,41 +102,15 @@ class Pointer:
         for hand in held:
             index = int(np.searchsorted(frame.serials, hand.serial))
             if index < len(frame.serials) and frame.serials[index] == hand.serial:
-                starts.append(_to_frame(frame, index, hand.local))
+                starts.append(in_world(frame, index, hand.local))
                 ends.append(hand.target)
         origin, shape = self._page.stage.origin, (len(starts), 2)
         z = self._page.stage.z(Layer.HAND)
         self._pulls.points = lines(np.reshape(starts, shape) - origin, np.reshape(ends, shape) - origin, z)
 
 
-def body_at(frame: Frame, x: float, y: float) -> int | None:
-    """Index of the dynamic body that covers this point of the world; of several, the one created last."""
-    local = _all_to_bodies(frame, x, y)
-    in_box = (frame.shape_kinds == BOX) & np.all(np.abs(local) <= frame.sizes / 2.0, axis=1)
-    in_circle = (frame.shape_kinds == CIRCLE) & (np.hypot(local[:, 0], local[:, 1]) <= frame.sizes[:, 0])
-    hits = np.flatnonzero((frame.body_kinds == DYNAMIC_BODY) & (in_box | in_circle))
-    return int(hits[-1]) if len(hits) else None
-
-
-def _all_to_bodies(frame: Frame, x: float, y: float) -> np.ndarray:
-    """The point in each body's own frame, (N, 2) [m]."""
-    away = np.array([x, y]) - frame.positions
-    cosine, sine = np.cos(frame.angles), np.sin(frame.angles)
-    return np.column_stack([cosine * away[:, 0] + sine * away[:, 1], cosine * away[:, 1] - sine * away[:, 0]])
-
-
-def _to_body(frame: Frame, index: int, x: float, y: float) -> np.ndarray:
-    return np.asarray(_all_to_bodies(frame, x, y)[index])
-
-
-def _to_frame(frame: Frame, index: int, local: np.ndarray) -> Point:
-    x, y = frame.positions[index]
-    cosine, sine = np.cos(frame.angles[index]), np.sin(frame.angles[index])
-    return float(x + cosine * local[0] - sine * local[1]), float(y + sine * local[0] + cosine * local[1])
-
-
 def _add_pick_plane(scene: viser.SceneApi) -> viser.MeshHandle:
-    corners, faces = square()
+    corners, faces = square_corners()
     return scene.add_mesh_simple(
         PICK_PLANE, corners * PLANE_SIZE, faces, opacity=0.0, side="double", cast_shadow=False, receive_shadow=False
     )

@@ -9,7 +9,7 @@ from collections.abc import Callable
 from sandbox.frame import Frame
 from web.guard import log
 
-RATES = ((2_000, 60.0), (10_000, 30.0))  # up to so many bodies, so many frames a second
+RATES = ((2_000, 60.0), (10_000, 30.0))  # up to so many pieces of bodies, so many frames a second
 RATE_BEYOND = 15.0
 EARLY = 0.8  # of the interval is waited, else a 60 Hz source would now and then just miss a 60 Hz display
 
@@ -75,5 +75,5 @@ class Publisher:
             self._complaint = complaint
 
     def _rate(self, frame: Frame) -> float:
-        bodies = len(frame.serials)
-        return min(self.rate_limit, next((rate for most, rate in RATES if bodies <= most), RATE_BEYOND))
+        pieces = len(frame.shape_serials)
+        return min(self.rate_limit, next((rate for most, rate in RATES if pieces <= most), RATE_BEYOND))

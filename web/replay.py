@@ -11,6 +11,7 @@ import viser
 
 from sandbox.frame import Frame
 from web.guard import log
+from web.overlays import OVERLAYS
 from web.page import Page
 from web.panels.desk import Event, add_hud, small_text
 from web.panels.status import status_html
@@ -46,7 +47,7 @@ class ReplayApp:
         self._frames = frames
         start = frames.frame(0)
         self._player = Player(len(frames), start.dt, start.time)
-        self._page = Page(lambda _: view, host, port)
+        self._page = Page(lambda _: view, host, port, [kind for kind in OVERLAYS if kind.in_recordings])
         self.url = self._page.url
         self._shown = -1
         self._frame: Frame | None = None

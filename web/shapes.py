@@ -1,51 +1,52 @@
-"""What each kind of shape looks like: a dark rim with a lighter face on top, as unit meshes to be scaled."""
+"""What each kind of shape looks like: a dark rim with a lighter face on top, or a line. A further kind is one entry."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable
 
 import numpy as np
 
-DISC_CORNERS = 40
-MARK_WIDTH = 0.07  # of the radius
-MARK_LIFT = 2.0  # layers above the rim, hence above the face: Layer.MARK - Layer.RIM
+from web.chains import chains
+from web.parts import DISC, MARKED_DISC, SQUARE, Loose, Part, Pieces, rimmed
+from web.polygons import polygons
+from web.stage import Layer
+from web.theme import LINE_TONE, RIM_TONE
 
-Mesh = tuple[np.ndarray, np.ndarray]  # (V, 3) vertices, (F, 3) faces
-
-
-@dataclass(frozen=True)
-class ShapeLook:
-    """How to draw one kind of shape. A new kind is one more entry in SHAPE_LOOKS."""
-
-    rim: Mesh
-    face: Mesh
-    half_extents: Callable[[np.ndarray], np.ndarray]  # Frame.sizes (N, 2) -> scale of the unit meshes (N, 2) [m]
+LINE_WIDTH = 0.005  # of the view's height
 
 
-def square() -> Mesh:
-    """From -1 to 1 in x and y."""
-    vertices = np.array([(-1, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0)], np.float32)
-    return vertices, np.array([(0, 1, 2), (0, 2, 3)], np.uint32)
+def boxes(pieces: Pieces) -> Iterable[Part]:
+    """Squares, drawn out."""
+    return rimmed(SQUARE, SQUARE, pieces, pieces.sizes / 2.0)
 
 
-def _disc() -> Mesh:
-    turns = np.linspace(0.0, 2.0 * np.pi, DISC_CORNERS, endpoint=False)
-    ring = np.column_stack([np.cos(turns), np.sin(turns), np.zeros(DISC_CORNERS)])
-    vertices = np.vstack([(0.0, 0.0, 0.0), ring]).astype(np.float32)
-    first = np.arange(1, DISC_CORNERS + 1)
-    return vertices, np.column_stack([np.zeros_like(first), first, np.roll(first, -1)]).astype(np.uint32)
+def circles(pieces: Pieces) -> Iterable[Part]:
+    """Discs with a mark that shows how they turn."""
+    return rimmed(MARKED_DISC, DISC, pieces, np.repeat(pieces.sizes[:, :1], 2, axis=1))
 
 
-def _marked_disc() -> Mesh:
-    """A disc with a bar from the middle to the edge, without which one could not see a circle roll."""
-    vertices, faces = _disc()
-    bar, bar_faces = square()
-    bar = bar * (0.49, MARK_WIDTH / 2, 1.0) + (0.49, 0.0, MARK_LIFT)
-    return np.vstack([vertices, bar]).astype(np.float32), np.vstack([faces, bar_faces + len(vertices)])
+def capsules(pieces: Pieces) -> Iterable[Part]:
+    """A disc at either end and a rectangle between; as all have one colour, one does not see where they overlap."""
+    length, radius = pieces.sizes.T
+    end, zero = length / 2.0, np.zeros_like(length)
+    for layer, tone, reach in ((Layer.RIM, RIM_TONE, radius), (Layer.FACE, 1.0, radius - pieces.rim(radius))):
+        for mesh, half_x, middle in ((SQUARE, end, zero), (DISC, reach, -end), (DISC, reach, end)):
+            half, offsets = np.column_stack([half_x, reach]), np.column_stack([middle, zero])
+            yield Part(mesh, layer, tone, pieces.members, half, offsets)
 
 
-SHAPE_LOOKS: dict[str, ShapeLook] = {
-    "box": ShapeLook(square(), square(), lambda sizes: sizes / 2.0),
-    "circle": ShapeLook(_marked_disc(), _disc(), lambda sizes: np.repeat(sizes[:, :1], 2, axis=1)),
+def segments(pieces: Pieces) -> Iterable[Part]:
+    """Lines about where they are: they are solid from both sides."""
+    half = np.full((len(pieces.members), 2), LINE_WIDTH * pieces.view_height / 2.0)
+    half[:, 0] = pieces.sizes[:, 0] / 2.0
+    return (Part(SQUARE, Layer.FACE, LINE_TONE, pieces.members, half, np.zeros_like(half)),)
+
+
+SHAPE_LOOKS: dict[str, Callable[[Pieces], Iterable[Part | Loose]]] = {
+    "box": boxes,
+    "circle": circles,
+    "capsule": capsules,
+    "polygon": polygons,
+    "segment": segments,
+    "chain": chains,
 }

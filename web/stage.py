@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from enum import IntEnum
 
+import numpy as np
+
 from sandbox.frame import Frame
 
 FAR_AWAY = 1000.0  # m from the origin; beyond it the browser's single precision would show as jitter
@@ -21,10 +23,12 @@ class Layer(IntEnum):
     RIM = 3
     FACE = 4
     MARK = 5  # the radius on a circle; part of the rim's mesh
-    JOINT = 6
-    IMPULSE = 7
-    CONTACT = 8
-    HAND = 9
+    BOUNDS = 6
+    JOINT = 7
+    NORMAL = 8
+    IMPULSE = 9
+    CONTACT = 10
+    HAND = 11
 
 
 @dataclass(frozen=True)
@@ -61,4 +65,5 @@ class Stage:
         for records, names in ((contacts, "y"), (joints, "y1 y2")):
             for name in names.split():
                 records[name] -= y
-        return replace(frame, positions=frame.positions - (x, y), contacts=contacts, joints=joints)
+        bounds = frame.bounds.astype(np.float64) - (x, y, x, y)
+        return replace(frame, positions=frame.positions - (x, y), bounds=bounds, contacts=contacts, joints=joints)

@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 import viser
 
+from engine import BODY_KINDS
+
 Colour = tuple[int, int, int]
 
 BACKDROP: Colour = (35, 38, 45)
@@ -13,6 +15,7 @@ GRID_SECTION: Colour = (66, 76, 96)
 BRAND: Colour = (86, 140, 188)
 
 STATIC: Colour = (78, 88, 106)
+KINEMATIC: Colour = (150, 154, 164)  # what moves, but is moved by nothing
 DYNAMIC: tuple[Colour, ...] = (  # muted, of one lightness, so that no body shouts
     (88, 138, 182),
     (98, 156, 146),
@@ -24,8 +27,12 @@ DYNAMIC: tuple[Colour, ...] = (  # muted, of one lightness, so that no body shou
     (106, 120, 186),
 )
 RIM_TONE = 0.5  # how dark a body's outline is against its face
+LINE_TONE = 1.7  # how light a line is that has no face
+BAND_TONE = 0.75  # of the band on the side where a chain is solid
 
 CONTACT: Colour = (255, 244, 214)
+NORMAL: Colour = (240, 130, 150)
+BOUNDS: Colour = (92, 128, 122)
 NORMAL_IMPULSE: Colour = (255, 196, 84)
 FRICTION_IMPULSE: Colour = (98, 218, 190)
 JOINT: Colour = (196, 160, 255)
@@ -36,12 +43,18 @@ PLOT_TEXT = "#9aa4b5"
 PLOT_GRID = "#2b313c"
 
 
-def body_colours(serials: np.ndarray, is_static: np.ndarray) -> np.ndarray:
+def body_colours(serials: np.ndarray, body_kinds: np.ndarray) -> np.ndarray:
     """(N, 3) uint8, sRGB. By creation number, so that a body keeps its colour for life."""
     scattered = (serials.astype(np.uint64) * np.uint64(2654435769) >> np.uint64(16)) % np.uint64(len(DYNAMIC))
     colours = np.array(DYNAMIC, np.uint8)[scattered.astype(np.int64)]
-    colours[is_static] = STATIC
+    for kind, colour in (("static", STATIC), ("kinematic", KINEMATIC)):
+        colours[body_kinds == BODY_KINDS.index(kind)] = colour
     return colours
+
+
+def toned(colours: np.ndarray, tone: float) -> np.ndarray:
+    """Lighter or darker, (N, 3) uint8."""
+    return np.minimum(colours * tone, 255.0).astype(np.uint8)
 
 
 def to_linear(colours: np.ndarray) -> np.ndarray:

@@ -6,6 +6,7 @@ import json
 import random
 import re
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pyarrow as pa
@@ -168,6 +169,60 @@ def test_a_number_changed_under_a_valid_container(tmp_path: Path, monkeypatch: p
     path = write(tmp_path / "wrong.rrd", steady_frames(3, bodies=3))
     assert checks
     assert refusal(path) == ": damaged at step 1"
+
+
+@pytest.mark.parametrize(
+    ("table", "field"),
+    [(schema.ROSTER, "body_kind"), *((schema.PIECES, name) for name in schema.PIECES.dtype.names or ()),
+     (schema.CORNERS, "x"), (schema.CORNERS, "y")],
+)  # fmt: skip
+def test_a_changed_shape_under_a_valid_container(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, table: schema.Table, field: str
+) -> None:
+    """What bodies look like is written once and holds for all steps: the checksum of each covers it."""
+    from recordings import state_sheets
+
+    real_columns = state_sheets.table_columns
+
+    def columns(of: schema.Table, rows: np.ndarray, lengths: np.ndarray) -> list:
+        if of.path == table.path:
+            rows = rows.copy()
+            values = np.ascontiguousarray(rows[field])
+            values.view(f"u{values.itemsize}")[-1] ^= 1
+            rows[field] = values
+        return real_columns(of, rows, lengths)
+
+    monkeypatch.setattr(state_sheets, "table_columns", columns)
+    assert refusal(write(tmp_path / "wrong.rrd", steady_frames(3, bodies=5))) == ": damaged at step 0"
+
+
+def test_pieces_without_a_body_are_refused_even_under_a_valid_checksum(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What reads a recording takes an owner for an index."""
+    from recordings import state_sheets
+
+    real = state_sheets.piece_rows
+
+    def orphaned(shot: Any) -> np.ndarray:
+        rows = real(shot)
+        rows["owner"][0] = 5_000
+        return rows
+
+    monkeypatch.setattr(state_sheets, "piece_rows", orphaned)
+    assert refusal(write(tmp_path / "orphan.rrd", steady_frames(3, bodies=5))) == ": damaged at step 0"
+
+
+@pytest.mark.parametrize("table", schema.ON_CHANGE)
+def test_shapes_that_are_missing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, table: schema.Table) -> None:
+    from recordings import state_sheets
+
+    real = state_sheets.StateSheets.sheets
+    monkeypatch.setattr(
+        state_sheets.StateSheets, "sheets", lambda *a: (sheet for sheet in real(*a) if sheet.path != table.path)
+    )
+    path = write(tmp_path / "missing.rrd", steady_frames(3, bodies=5))
+    assert "damaged: what bodies look like is missing" in refusal(path)
 
 
 @pytest.mark.parametrize("part", ["json", "snapshot"])

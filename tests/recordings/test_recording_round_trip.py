@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from recorded_frames import DT, Start, random_frame, start_of, steady_frames, tumbling, write
+from recorded_frames import CONTENT, DT, Start, random_frame, start_of, steady_frames, tumbling, write
 
 import recordings
 from recordings import schema
@@ -20,12 +20,17 @@ from recordings import schema
 ARRAYS = (
     "serials",
     "body_kinds",
-    "shape_kinds",
-    "sizes",
     "positions",
     "angles",
     "velocities",
     "angular_velocities",
+    "shape_serials",
+    "owners",
+    "shape_kinds",
+    "sizes",
+    "places",
+    "corner_counts",
+    "corners",
     "contacts",
     "joints",
 )
@@ -153,11 +158,39 @@ def test_steps_must_follow_each_other(tmp_path: Path) -> None:
 def test_shapes_are_written_only_when_bodies_come_or_go(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("recordings.mailbox.BLOCK_BYTES", 30_000)  # many blocks
     rows = _rows_by_path(write(tmp_path / "t.rrd", list(tumbling(90))))
-    assert rows[schema.ROSTER.path] == 2  # at the start, and at step 40
-    assert rows["/world/bodies/boxes", "Boxes3D:half_sizes"] == 2
-    assert rows["/world/bodies/boxes", "InstancePoses3D:translations"] == 90
-    assert rows["/world/static/boxes", "Boxes3D:half_sizes"] == 2
-    assert rows["/world/static/boxes", "InstancePoses3D:translations"] == 2  # it never moves
+    for table in schema.ON_CHANGE:
+        assert rows[table.path] == 2  # at the start, and at step 40
+    shapes = {"boxes": "Boxes3D:half_sizes", "circles": "Cylinders3D:radii", "outlines/0": "Mesh3D:vertex_positions"}
+    for entity, component in shapes.items():
+        assert rows[f"/world/bodies/{entity}", component] == 2
+        assert rows[f"/world/bodies/{entity}", "InstancePoses3D:translations"] == 90
+    still = {
+        "boxes": "InstancePoses3D:translations",
+        "segments": "LineStrips3D:strips",
+        "chains": "LineStrips3D:strips",
+    }
+    for entity, component in still.items():
+        assert rows[f"/world/static/{entity}", component] == 2  # it never moves
+
+
+@pytest.mark.parametrize("name", CONTENT)
+def test_any_change_of_what_there_is_is_noticed(tmp_path: Path, name: str) -> None:
+    """A restored snapshot may have others of the same number."""
+    frames = steady_frames(4, bodies=6)
+    values = getattr(frames[0], name).copy()
+    if name == "owners":
+        values[-1] = (values[-1] + 1) % 6
+    elif name == "corner_counts":
+        first, last = np.flatnonzero(values)[[0, -1]]
+        values[first], values[last] = values[first] + 1, values[last] - 1
+    elif values.dtype == np.uint8:
+        values[-1] ^= 1
+    else:
+        values[-1] = values[-1] + 1
+    changed = [replace(frame, **{name: values}) if frame.step > 1 else frame for frame in frames]
+    recording = recordings.read(write(tmp_path / "c.rrd", changed))
+    for frame in changed:
+        assert_same_bits(recording.state(frame.step), frame)
 
 
 def _rows_by_path(path: Path) -> dict[object, int]:

@@ -51,6 +51,7 @@ def test_same_bits_are_no_difference(recording: recordings.Recording, frames: li
         ("velocities", 1, "velocity y"),
         ("angular_velocities", None, "angular velocity"),
         ("serials", None, "serial"),
+        ("body_kinds", None, "kind"),
     ],
 )
 def test_one_last_bit_of_a_body(
@@ -63,6 +64,45 @@ def test_one_last_bit_of_a_body(
     assert (difference.step, difference.body, difference.field) == (3, int(frames[3].serials[2]), field)
     assert "\n" not in str(difference)
     assert str(difference).startswith(f"step 3, body {difference.body}: {field} was ")
+
+
+@pytest.mark.parametrize(
+    ("name", "column", "field"),
+    [
+        ("shape_serials", None, "piece serial"),
+        ("owners", None, "piece owner"),
+        ("shape_kinds", None, "piece kind"),
+        ("corner_counts", None, "piece corner count"),
+        ("sizes", 0, "piece size 1"),
+        ("sizes", 1, "piece size 2"),
+        ("places", 0, "piece place x"),
+        ("places", 1, "piece place y"),
+        ("places", 2, "piece place angle"),
+    ],
+)
+def test_one_last_bit_of_a_piece(
+    recording: recordings.Recording, frames: list[Frame], name: str, column: int | None, field: str
+) -> None:
+    row = 2 if column is None else (2, column)
+    changed = with_frame(frames, 3, **{name: flipped(getattr(frames[3], name), row)})
+    difference = recordings.compare(recording, changed)
+    assert difference is not None
+    owner = int(frames[3].serials[frames[3].owners[2]])
+    assert (difference.step, difference.body, difference.field) == (3, owner, field)
+
+
+@pytest.mark.parametrize("which", [0, -1])
+def test_one_last_bit_of_a_corner(which: int, tmp_path: Path) -> None:
+    frames = steady_frames(4, bodies=12)
+    recording = recordings.read(write(tmp_path / "c.rrd", frames))
+    frame = frames[3]
+    polygons = frame.owners[np.flatnonzero(frame.corner_counts)]
+    assert polygons[0] != polygons[-1]
+    changed = with_frame(frames, 3, corners=flipped(frame.corners, (which, 1)))
+    difference = recordings.compare(recording, changed)
+    assert difference is not None
+    assert (difference.step, difference.body) == (3, int(frame.serials[polygons[which]]))
+    assert difference.field == "corner y"
 
 
 @pytest.mark.parametrize(("name", "noun"), [("contacts", "contact"), ("joints", "joint")])
@@ -84,6 +124,13 @@ def test_counts(recording: recordings.Recording, frames: list[Frame]) -> None:
     assert recordings.compare(recording, fewer) == recordings.Difference(2, None, "contact count", 3, 2)
     more = with_frame(frames, 2, joints=np.concatenate([frames[2].joints, frames[2].joints]))
     assert recordings.compare(recording, more) == recordings.Difference(2, None, "joint count", 2, 4)
+    none = {
+        name: getattr(frames[2], name)[:-1] for name in ("shape_serials", "owners", "shape_kinds", "sizes", "places")
+    }
+    pieces = len(frames[2].owners)
+    assert recordings.compare(recording, with_frame(frames, 2, **none)) == recordings.Difference(
+        2, None, "piece count", pieces, pieces - 1
+    )
     other = steady_frames(6, bodies=5)
     assert recordings.compare(recording, other) == recordings.Difference(0, None, "body count", 4, 5)
 

@@ -11,15 +11,13 @@ from typing import Any
 
 import numpy as np
 
-from engine import CONTACT_RECORD, JOINT_RECORD, Diagnostics, Settings
+from engine import BODY_KINDS, CONTACT_RECORD, JOINT_RECORD, SHAPE_KINDS, Diagnostics, EffectStatus, Settings
 from sandbox.commands import (
     LoadScene,
     Pause,
     Play,
-    SetGravity,
-    SetIterations,
+    Set,
     SetSpeed,
-    SetSwitch,
     Spawn,
     StartRecording,
     StopRecording,
@@ -30,30 +28,51 @@ from sandbox.viewer import Viewer
 
 BODY = tuple[str, str, float, float, float, float, float]  # kind, shape, size 1 and 2, x, y, angle
 GROUND: BODY = ("static", "box", 40.0, 2.0, 0.0, -1.0, 0.0)
+PENTAGON = np.column_stack([np.cos(np.arange(5) * 0.4 * np.pi), np.sin(np.arange(5) * 0.4 * np.pi)])
 DT = 1.0 / 60.0
+PATIENCE = 20.0  # for what must come, on however busy a machine [s]
+EFFECTS = (
+    EffectStatus("gravity", True, "gravity is (0, -10) m/s²"),
+    EffectStatus("restitution", False, ""),
+    EffectStatus("friction", True, "3 of 3 shapes have <friction>"),
+)
 
 
-def make_frame(bodies: list[BODY], **changes: Any) -> Frame:
-    """A frame with these bodies at rest, and nothing else in it."""
+def make_frame(bodies: list[BODY], corners: list[np.ndarray] | None = None, **changes: Any) -> Frame:
+    """A frame with these bodies at rest, each of one piece, and nothing else in it.
+
+    corners: of the polygons, one after another; pentagons of radius 1 if left out.
+    """
     table = np.array([body[2:] for body in bodies], np.float64).reshape(len(bodies), 5)
     count = len(bodies)
+    kinds = np.array([SHAPE_KINDS.index(body[1]) for body in bodies], np.uint8)
+    is_polygon = kinds == SHAPE_KINDS.index("polygon")
+    corners = [PENTAGON] * int(is_polygon.sum()) if corners is None else corners
+    counts = np.zeros(count, np.uint8)
+    counts[is_polygon] = [len(own) for own in corners]
     frame = Frame(
         scene=next(iter(SCENES)),
         step=0,
         time=0.0,
         dt=DT,
         serials=np.arange(count, dtype=np.int64),
-        body_kinds=np.array([body[0] == "dynamic" for body in bodies], np.uint8),
-        shape_kinds=np.array([body[1] == "circle" for body in bodies], np.uint8),
-        sizes=table[:, :2],
+        body_kinds=np.array([BODY_KINDS.index(body[0]) for body in bodies], np.uint8),
         positions=table[:, 2:4],
         angles=table[:, 4],
         velocities=np.zeros((count, 2)),
         angular_velocities=np.zeros(count),
+        shape_serials=np.arange(count, dtype=np.int64),
+        owners=np.arange(count),
+        shape_kinds=kinds,
+        sizes=table[:, :2],
+        places=np.zeros((count, 3)),
+        corner_counts=counts,
+        corners=np.concatenate([np.zeros((0, 2)), *corners]),
         contacts=np.zeros(0, CONTACT_RECORD),
         joints=np.zeros(0, JOINT_RECORD),
         diagnostics=Diagnostics(0.0, 0.0, (0.0, 0.0), 0.0, 0.0, 0),
         settings=Settings(gravity=(0.0, -10.0)),
+        effects=EFFECTS,
         stage_ms={"broad phase": 0.4, "narrow phase": 0.7, "solve": 1.1},
         content=count,
     )
@@ -108,7 +127,7 @@ class FakeSession:
     def of(self, kind: type) -> list[Any]:
         return [command for command in self.submitted if isinstance(command, kind)]
 
-    def wait_for(self, kind: type, count: int = 1, timeout: float = 5.0) -> list[Any]:
+    def wait_for(self, kind: type, count: int = 1, timeout: float = PATIENCE) -> list[Any]:
         return wait_until(lambda: self.of(kind) if len(self.of(kind)) >= count else None, timeout, kind.__name__)
 
     def _applied(self, command: Any) -> Frame:
@@ -117,16 +136,12 @@ class FakeSession:
             for place in range(command.count):
                 size = (command.width / 2, 0.0) if command.shape == "circle" else (command.width, command.height)
                 self._bodies.append(
-                    ("dynamic", command.shape, *size, command.x + place * command.width, command.y, 0.0)
+                    (command.kind, command.shape, *size, command.x + place * command.width, command.y, 0.0)
                 )
             kept = {"settings": settings, "status": status, "step": frame.step, "time": frame.time}
             return make_frame(self._bodies, scene=frame.scene, **kept)
-        if isinstance(command, SetGravity):
-            settings = replace(settings, gravity=(command.x, command.y))
-        elif isinstance(command, SetIterations):
-            settings = replace(settings, iterations=command.iterations)
-        elif isinstance(command, SetSwitch):
-            settings = replace(settings, **{command.switch: command.on})
+        if isinstance(command, Set):
+            settings = settings.changed({command.setting: command.value})
         elif isinstance(command, SetSpeed):
             status = replace(status, speed=command.speed)
         elif isinstance(command, Pause | Play):
@@ -147,7 +162,7 @@ class FakeSession:
                 self.publish(step=step, time=step * DT, status=status)
 
 
-def wait_until(look: Callable[[], Any], timeout: float = 5.0, what: str = "it") -> Any:
+def wait_until(look: Callable[[], Any], timeout: float = PATIENCE, what: str = "it") -> Any:
     """The first true thing that `look` finds."""
     end = time.monotonic() + timeout
     while time.monotonic() < end:

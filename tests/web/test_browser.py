@@ -9,11 +9,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from sandbox.commands import Grab, MoveHand, Pause, Play, Release, SetGravity, Spawn
+from sandbox.commands import Grab, MoveHand, Pause, Play, Release, Set, Spawn
 from sandbox.scenes import SCENES
 from tests.web.browser import CANVAS, KNOWN, look, open_page, text_field, to_pixel
 from tests.web.fake_session import BODY, GROUND, FakeSession, wait_until
 from web import App
+from web.chains import BAND_WIDTH
 
 pytestmark = pytest.mark.browser
 
@@ -22,12 +23,17 @@ LOW = VIEW[1] - 0.25 * VIEW[2]  # a height in the lower part of the view [m]
 BOX: BODY = ("dynamic", "box", 2.0, 1.0, VIEW[0], VIEW[1], 0.6)
 CIRCLE: BODY = ("dynamic", "circle", 0.8, 0.0, VIEW[0] + 3.0, LOW, 0.0)
 EMPTY = (VIEW[0] + 2.5, VIEW[1] + 3.0)
+LEFT = VIEW[0] - 0.45 * VIEW[2]
+CAPSULE: BODY = ("dynamic", "capsule", 1.0, 0.4, LEFT, LOW, np.pi / 2)
+POLYGON: BODY = ("dynamic", "polygon", 0.2, 0.0, LEFT + 2.5, LOW, 0.0)
+SEGMENT: BODY = ("static", "segment", 2.0, 0.0, LEFT, VIEW[1] + 1.0, 0.0)
+CHAIN: BODY = ("static", "chain", 2.0, 0.0, LEFT, VIEW[1], 0.0)
 
 
 @pytest.fixture(scope="module")
 def opened(chromium: Path) -> Iterator[tuple[FakeSession, Any]]:
     ground = (*GROUND[:4], VIEW[0], LOW - 2.0, 0.0)
-    session = FakeSession([ground, BOX, CIRCLE])
+    session = FakeSession([ground, BOX, CIRCLE, CAPSULE, POLYGON, SEGMENT, CHAIN])
     app = App(session, port=0)  # type: ignore[arg-type]
     with open_page(app.url, width=1200, height=700) as page:
         yield session, page
@@ -54,6 +60,27 @@ def test_bodies_are_drawn_where_the_frame_says(opened: Opened, tmp_path: Path) -
     ground, box = _colour(page, picture, VIEW[0] + 1.0, LOW - 2.0), _colour(page, picture, BOX[4], BOX[5])
     assert _differs(ground, nothing)
     assert np.ptp(box) > 2 * np.ptp(ground)  # static bodies are grey
+
+
+def test_every_other_shape_is_drawn_as_it_is(opened: Opened, tmp_path: Path) -> None:
+    _, page = opened
+    picture = look(page, tmp_path / "page.png")
+    nothing = _colour(page, picture, *EMPTY)
+    depth = BAND_WIDTH * VIEW[2]
+    inside = [
+        (CAPSULE, 0.0, 0.75),
+        (CAPSULE, 0.3, 0.0),
+        (CAPSULE, 0.2, -0.7),
+        (POLYGON, 1.1, 0.0),
+        (POLYGON, -0.9, 0.0),
+    ]
+    outside = [(CAPSULE, 0.38, 0.85), (CAPSULE, 0.55, 0.0), (POLYGON, 0.9, 0.85), (POLYGON, -1.25, 0.0)]
+    bright = [(SEGMENT, 0.5, 0.0), (CHAIN, 0.5, -0.1 * depth)]
+    assert all(_differs(_colour(page, picture, body[4] + x, body[5] + y), nothing) for body, x, y in inside)
+    assert not any(_differs(_colour(page, picture, body[4] + x, body[5] + y), nothing) for body, x, y in outside)
+    assert all(_brightness(page, picture, body[4] + x, body[5] + y) > 100 for body, x, y in bright)
+    above, below = (_brightness(page, picture, CHAIN[4] + 0.5, CHAIN[5] + side * depth) for side in (0.7, -0.7))
+    assert below > above + 8, "its solid side is the lower one"
 
 
 def test_a_click_spawns_where_it_is(opened: Opened, tmp_path: Path) -> None:
@@ -88,12 +115,12 @@ def test_a_slider_changes_gravity_and_follows_others(opened: Opened) -> None:
     field = text_field(page, "gravity y")
     field.fill("-3")
     field.press("Enter")
-    assert session.wait_for(SetGravity)[-1] == SetGravity(0.0, -3.0)
+    assert session.wait_for(Set)[-1] == Set("gravity", (0.0, -3.0))
     field.blur()
     page.wait_for_timeout(800)
-    session.submit(SetGravity(0.0, 7.0))
+    session.submit(Set("gravity", (0.0, 7.0)))
     wait_until(lambda: field.input_value() == "7")
-    assert len(session.of(SetGravity)) == 2  # following is not a change of its own
+    assert len(session.of(Set)) == 2  # following is not a change of its own
 
 
 def test_space_pauses_and_plays(opened: Opened) -> None:
@@ -158,6 +185,12 @@ def _colour(page: Any, picture: np.ndarray, x: float, y: float) -> np.ndarray:
     """The middle colour around a point of the world; lines of the grid do not count."""
     column, row = (round(value) for value in to_pixel(page, VIEW, x, y))
     return np.asarray(np.median(picture[row - 3 : row + 4, column - 3 : column + 4].reshape(-1, 3), axis=0))
+
+
+def _brightness(page: Any, picture: np.ndarray, x: float, y: float) -> float:
+    """Of the brightest of the few pixels above and below a point of the world, along a line."""
+    column, row = (round(value) for value in to_pixel(page, VIEW, x, y))
+    return float(picture[row - 1 : row + 2, column - 8 : column + 9].astype(float).mean(axis=(1, 2)).max())
 
 
 def _differs(first: np.ndarray, second: np.ndarray) -> bool:

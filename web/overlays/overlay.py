@@ -19,6 +19,7 @@ class Overlay(ABC):
     label: ClassVar[str]
     hint: ClassVar[str]
     shown_at_first: ClassVar[bool] = True
+    in_recordings: ClassVar[bool] = True  # whether a recording holds what it draws
 
     def __init__(self, scene: viser.SceneApi) -> None:
         self._shown = self.shown_at_first

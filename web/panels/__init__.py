@@ -1,6 +1,8 @@
 """The folders of the control panel, in their order. A further one is one more file and one more line here."""
 
+from web.panels.accuracy import AccuracyPanel
 from web.panels.desk import Desk, Panel
+from web.panels.effects import EffectsPanel
 from web.panels.help import HelpPanel
 from web.panels.physics import PhysicsPanel
 from web.panels.plots import PlotsPanel
@@ -15,6 +17,8 @@ PANELS: tuple[type[Panel], ...] = (
     SimulationPanel,
     SpawnPanel,
     PhysicsPanel,
+    EffectsPanel,
+    AccuracyPanel,
     ViewPanel,
     PlotsPanel,
     HelpPanel,

@@ -14,6 +14,7 @@ from web.page import Page
 
 if TYPE_CHECKING:
     from sandbox.session import Session
+    from web.panels.effects import Measure
 
 SETTLE_TIME = 0.6  # s after a client's hand left a control, before the control follows the session again
 HUD_PLACE = (14, 14, 640)  # pixels: left, top, width. Low and wide: web.camera.HUD_SHARE is all that it may cover
@@ -33,8 +34,9 @@ class Panel(Protocol):
 class Desk:
     """Given to every panel. The session is touched by nothing but `submit`."""
 
-    def __init__(self, page: Page, session: Session) -> None:
+    def __init__(self, page: Page, session: Session, measure_effects: Measure | None = None) -> None:
         self.page = page
+        self.measure_effects = measure_effects  # None: nothing here can measure them
         self.gui = page.gui
         self.session = session
         self.hud = add_hud(page.gui)  # for what one watches, apart from what one sets

@@ -1,56 +1,107 @@
-"""The settings of the world: gravity, and what the solver does."""
+"""The settings of the world, made from what the engine says of each: its range, and to which solvers it matters."""
 
 from __future__ import annotations
 
-from functools import partial
+from collections.abc import Callable, Iterable
+from typing import Any
 
-from engine import SOLVERS
-from sandbox.commands import SetGravity, SetIterations, SetSolver, SetSwitch
+import viser
+
+from engine.settings import SettingInfo, Settings
+from sandbox.commands import Set
+from sandbox.commands.settings import CHANGEABLE
 from sandbox.frame import Frame
 from web.panels.desk import Desk, Follower
 
-STRONGEST_GRAVITY = 30.0  # m/s^2
-MOST_ITERATIONS = 50
-SWITCHES = {
-    "accumulate_impulses": "clamp the sum of a contact's impulses, not each alone",
-    "warm_starting": "start from the impulses of the step before",
-    "position_correction": "push bodies apart that have sunk into each other",
+MAIN = (
+    "gravity", "solver", "substeps", "iterations", "accumulate_impulses", "warm_starting", "position_correction",
+)  # fmt: skip
+SURROUNDINGS = ("wind", "friction_mixing", "restitution_mixing")
+NEEDS = {  # settings that another one switches off
+    "contact_hertz": ("stiffness", "fixed"),
+    "joint_hertz": ("stiffness", "fixed"),
+    "recycling_distance": ("recycling", True),
 }
 
 
 class PhysicsPanel:
+    """The main ones open; whatever else the engine has, in two folders below them."""
+
     def __init__(self, desk: Desk) -> None:
+        self._desk = desk
+        self._settings: Settings = desk.session.frame.settings
         self._follower = Follower()
+        self._controls: list[tuple[SettingInfo, Any]] = []
         with desk.gui.add_folder("Physics"):
-            self._add_gravity(desk)
-            self._add_solver(desk)
-            for name, hint in SWITCHES.items():
-                self._add_switch(desk, name, hint)
-
-    def _add_gravity(self, desk: Desk) -> None:
-        limit = STRONGEST_GRAVITY
-        x = desk.gui.add_slider("gravity x", -limit, limit, 0.1, 0.0, hint="m/s²")
-        y = desk.gui.add_slider("gravity y", -limit, limit, 0.1, -10.0, hint="m/s²")
-        for axis, slider in enumerate((x, y)):
-            desk.on_change(slider, lambda: SetGravity(x.value, y.value))
-            self._follower.add(slider, partial(_gravity, axis))
-
-    def _add_solver(self, desk: Desk) -> None:
-        solver = desk.gui.add_dropdown("solver", tuple(SOLVERS))
-        desk.on_change(solver, lambda: SetSolver(solver.value))
-        self._follower.add(solver, lambda frame: frame.settings.solver)
-        iterations = desk.gui.add_slider("iterations", 1, MOST_ITERATIONS, 1, 10, hint="passes of the solver in a step")
-        desk.on_change(iterations, lambda: SetIterations(iterations.value))
-        self._follower.add(iterations, lambda frame: frame.settings.iterations)
-
-    def _add_switch(self, desk: Desk, name: str, hint: str) -> None:
-        switch = desk.gui.add_checkbox(name.replace("_", " "), True, hint=hint)
-        desk.on_change(switch, lambda: SetSwitch(name, switch.value))
-        self._follower.add(switch, lambda frame: bool(getattr(frame.settings, name)))
+            self._add_all(MAIN)
+            with desk.gui.add_folder("Solver details", expand_by_default=False):
+                self._add_all(name for name in CHANGEABLE if name not in (*MAIN, *SURROUNDINGS))
+            with desk.gui.add_folder("Wind and materials", expand_by_default=False):
+                self._add_all(SURROUNDINGS)
+        self._show_what_matters()
 
     def update(self, frame: Frame) -> None:
         self._follower.update(frame)
+        if frame.settings != self._settings:
+            self._settings = frame.settings
+            self._show_what_matters()
+
+    def _show_what_matters(self) -> None:
+        for info, control in self._controls:
+            matters = matters_now(info, self._settings)
+            if control.visible != matters:
+                control.visible = matters
+
+    def _add_all(self, names: Iterable[str]) -> None:
+        for name in names:
+            info = CHANGEABLE[name]
+            if info.kind == "vector":
+                self._add_vector(info)
+            else:
+                control = _add_control(self._desk.gui, info, getattr(self._settings, name))
+                self._keep(info, control, _setter(name, control), _getter(name))
+
+    def _add_vector(self, info: SettingInfo) -> None:
+        x, y = getattr(self._settings, info.name)
+        sliders = [
+            _add_slider(self._desk.gui, info, f"{info.name} {axis}", value) for axis, value in (("x", x), ("y", y))
+        ]
+        for axis, slider in enumerate(sliders):
+            self._keep(info, slider, lambda: Set(info.name, [one.value for one in sliders]), _getter(info.name, axis))
+
+    def _keep(self, info: SettingInfo, control: Any, make: Callable[[], Set], read: Callable[[Frame], Any]) -> None:
+        self._controls.append((info, control))
+        self._desk.on_change(control, make)
+        self._follower.add(control, read)
 
 
-def _gravity(axis: int, frame: Frame) -> float:
-    return float(frame.settings.gravity[axis])
+def matters_now(info: SettingInfo, settings: Settings) -> bool:
+    """Whether changing this setting would change anything, as the others are."""
+    name, needed = NEEDS.get(info.name, ("solver", settings.solver))
+    return (not info.solvers or settings.solver in info.solvers) and getattr(settings, name) == needed
+
+
+def _add_control(gui: viser.GuiApi, info: SettingInfo, value: Any) -> Any:
+    label = info.name.replace("_", " ")
+    if info.kind == "switch":
+        return gui.add_checkbox(label, value, hint=info.hint)
+    if info.kind == "choice":
+        return gui.add_dropdown(label, info.choices, initial_value=value, hint=info.hint)
+    return _add_slider(gui, info, label, value)
+
+
+def _add_slider(gui: viser.GuiApi, info: SettingInfo, label: str, value: float) -> Any:
+    hint = f"{info.hint} [{info.unit}]" if info.unit else info.hint
+    return gui.add_slider(label, info.low, info.high, info.step, min(max(value, info.low), info.high), hint=hint)
+
+
+def _setter(name: str, control: Any) -> Callable[[], Set]:
+    return lambda: Set(name, control.value)
+
+
+def _getter(name: str, axis: int | None = None) -> Callable[[Frame], Any]:
+    def read(frame: Frame) -> Any:
+        value = getattr(frame.settings, name)
+        return value if axis is None else value[axis]
+
+    return read

@@ -24,7 +24,7 @@ class SimulationPanel:
 
     def _add_controls(self, desk: Desk) -> None:
         gui = desk.gui
-        scene = gui.add_dropdown("scene", tuple(SCENES))
+        scene = gui.add_dropdown("scene", tuple(SCENES), initial_value=desk.session.frame.scene)
         desk.on_change(scene, lambda: LoadScene(scene.value))
         self._follower.add(scene, lambda frame: frame.scene)
         self._play = gui.add_button("Pause", icon=viser.Icon.PLAYER_PAUSE, hint="space")

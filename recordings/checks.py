@@ -1,0 +1,53 @@
+"""Whether what came out of a file is what went in: every step's checksum, and pieces that belong to bodies."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from recordings import schema
+from recordings.schema import RecordingError
+from recordings.shot import checksum, content_checksum
+from recordings.stored_table import StoredTable
+
+
+def whole_content(path: Path, tables: dict[str, StoredTable]) -> StoredTable:
+    """What takes part in the checksums of the steps that have it: one number for each entry of the content's tables.
+
+    Raises:
+        RecordingError: the tables do not fit together.
+    """
+    roster, pieces, corners = (tables[table.path] for table in schema.ON_CHANGE)
+    if not (np.array_equal(roster.steps, pieces.steps) and np.array_equal(roster.steps, corners.steps)):
+        raise RecordingError(f"{path}: damaged: what bodies look like is missing")
+    sums = [np.zeros(0, np.uint32)]
+    for step in map(int, roster.steps):
+        bodies, own, points = roster.at(step), pieces.at(step), corners.at(step)
+        in_order = np.all(np.diff(bodies["serial"]) > 0) and np.isin(own["owner"], bodies["serial"]).all()
+        if not in_order or own["corner_count"].sum(dtype=np.int64) != len(points):
+            raise RecordingError(f"{path}: damaged at step {step}")
+        sums.append(content_checksum([bodies, own, points]))
+    return StoredTable(roster.steps, np.arange(len(roster.steps) + 1), np.concatenate(sums))
+
+
+def check_steps(
+    path: Path, tables: dict[str, StoredTable], commands: dict[int, list[str]], content: StoredTable
+) -> None:
+    """Compares each step's checksum with its content, and drops the commands of steps that were cut off.
+
+    Raises:
+        RecordingError: they differ.
+    """
+    steps = tables[schema.STEPS.path].steps
+    for step in [step for step in commands if not len(steps) or step > steps[-1]]:
+        del commands[step]
+    for step in map(int, steps):
+        parts = [tables[table.path].at(step) for table in schema.EVERY_STEP]
+        numbers = parts[-1].copy()
+        if len(numbers) != 1 or len(parts[0]) != len(tables[schema.ROSTER.path].at(step)):
+            raise RecordingError(f"{path}: damaged at step {step}")
+        expected = int(numbers["checksum"][0])
+        numbers["checksum"] = 0
+        if checksum(step, [*parts[:-1], numbers, content.at(step)], commands.get(step, [])) != expected:
+            raise RecordingError(f"{path}: damaged at step {step}")

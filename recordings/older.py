@@ -1,0 +1,28 @@
+"""Recordings of earlier versions, as if they had been written today."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from recordings import schema
+from recordings.stored_table import StoredTable
+
+
+def upgraded(roster: StoredTable) -> dict[str, StoredTable]:
+    """The tables ON_CHANGE of a recording of version 1, where each body had one shape, at its origin."""
+    bodies = np.empty(len(roster.rows), schema.ROSTER.dtype)
+    for name in ("serial", "body_kind"):
+        bodies[name] = roster.rows[name]
+    pieces = np.zeros(len(roster.rows), schema.PIECES.dtype)
+    pieces["owner"] = roster.rows["serial"]
+    for name in ("serial", "shape_kind", "size1", "size2"):
+        pieces[name] = roster.rows[name]
+    corners = np.zeros(0, schema.CORNERS.dtype)
+    for rows in (bodies, pieces, corners):
+        rows.flags.writeable = False
+    none = np.zeros(len(roster.steps) + 1, np.int64)
+    return {
+        schema.ROSTER.path: StoredTable(roster.steps, roster.starts, bodies),
+        schema.PIECES.path: StoredTable(roster.steps, roster.starts, pieces),
+        schema.CORNERS.path: StoredTable(roster.steps, none, corners),
+    }
