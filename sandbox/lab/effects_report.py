@@ -96,8 +96,14 @@ def cost(row: Row) -> str:
 
 
 def shown(difference: Difference) -> str:
-    """A figure, or between what nothing can be told from noise."""
-    return f"0 ± {difference.noise:.1f}" if difference.is_noise else f"{difference.median:.1f}"
+    """A figure, or within what nothing can be told from noise."""
+    if difference.is_noise:
+        return f"0 ± {digits(difference.noise)}"
+    return digits(difference.median)
+
+
+def digits(value: float) -> str:
+    return f"{value:.2f}" if abs(value) < 1.0 else f"{value:.1f}" if abs(value) < 100.0 else f"{value:.0f}"
 
 
 def seconds(row: Row) -> str:

@@ -21,7 +21,7 @@ from engine import SOLVERS, Box, Capsule, Chain, Circle, Polygon, Segment, World
 from engine.trigonometry import cos_sin
 from tests.engine.worlds import DT, POINTS, PRECISIONS, floor, tables_of
 
-STEPS = 30
+STEPS = 20
 ITERATIONS = 4  # of the talk's solver
 SWITCHED = (("boxes", "single"), ("joined", "double"))
 SWITCHES = ("accumulate_impulses", "warm_starting", "position_correction")

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from engine import Body, Box, Capsule, Chain, Circle, Polygon, Segment, Shape, World
+from engine import Body, Box, Capsule, Chain, Circle, Polygon, Segment, Settings, Shape, World
 
 DT = 1.0 / 60.0
 PRECISIONS = ("single", "double")
@@ -91,6 +91,6 @@ def tables_of(world: World) -> dict[str, bytes]:
     return {name: table.tobytes() for name, table in world.snapshot().tables.items()}
 
 
-def fingerprint(world: World) -> tuple[str, bytes, int, float]:
+def fingerprint(world: World) -> tuple[dict[str, bytes], Settings, int, float]:
     """What a refusal must leave as it was."""
-    return world.state_hash(), world.snapshot().to_bytes(), world.step_count, world.time
+    return tables_of(world), world.settings, world.step_count, world.time

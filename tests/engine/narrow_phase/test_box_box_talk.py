@@ -21,7 +21,7 @@ TIE = 1e-9  # [m]: closer than this to touching, or to a corner, rounding decide
 sizes = st.floats(0.2, 3.0)
 angles = st.one_of(st.floats(-4, 4), st.sampled_from([0.0, math.pi / 4, math.pi / 2, 1e-7]))
 boxes = st.builds(PlacedBox, st.floats(-1.5, 1.5), st.floats(-1.5, 1.5), angles, sizes, sizes)
-pairs = settings(max_examples=250, deadline=None, suppress_health_check=[HealthCheck.filter_too_much])
+pairs = settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.filter_too_much])
 
 
 def collide(box1: PlacedBox, box2: PlacedBox, precision: str = "double") -> World:
