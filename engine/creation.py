@@ -11,7 +11,7 @@ from engine.blueprint import Blueprint
 from engine.bodies import Body, Pair
 from engine.effects import BODY_PROPERTIES, SHAPE_PROPERTIES
 from engine.integrate import place_rows
-from engine.joints.handle import RevoluteJoint
+from engine.joints.handle import RevoluteJoint, checked_motor
 from engine.properties import check
 from engine.shape_handle import ShapeHandle
 from engine.shapes import Shape
@@ -119,6 +119,8 @@ def add_revolute(
     softness: float,
     bias_factor: float | None,
     collide_connected: bool,
+    motor_speed: float | None,
+    max_motor_torque: float,
 ) -> RevoluteJoint:
     """Checks everything, then writes the joint's row: World.create_joint_revolute says what the arguments mean."""
     for name, body in (("body1", body1), ("body2", body2)):
@@ -132,6 +134,7 @@ def add_revolute(
     validate.in_range(world.precision, softness=(softness,))
     bias = -1.0 if bias_factor is None else validate.between("bias_factor", bias_factor, 0.0, 1.0)
     collide_connected = validate.switch("collide_connected", collide_connected)
+    motor = checked_motor(world.precision, motor_speed, max_motor_torque)
 
     values: dict[str, Any] = {
         "body1": body1._row,
@@ -148,6 +151,8 @@ def add_revolute(
     row = storage.add()
     for name, value in values.items():
         storage.tables["joints"][name][row] = value
+    for name, value in motor.items():
+        storage.put(name, row, value)
     return RevoluteJoint(world, row, int(storage.tables["joints"]["serial"][row]))
 
 

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from engine.jit import kernel
+from engine.lanes import maximum, minimum, sqrt
 
 RULES = ("geometric", "mean", "least", "greatest", "product")
 GEOMETRIC, MEAN, LEAST, GREATEST, PRODUCT = range(5)
@@ -16,9 +15,9 @@ def mix(rule, a, b):
     if rule == MEAN:
         return 0.5 * (a + b)
     if rule == LEAST:
-        return min(a, b)
+        return minimum(a, b)
     if rule == GREATEST:
-        return max(a, b)
+        return maximum(a, b)
     if rule == PRODUCT:
         return a * b
-    return np.sqrt(a * b)
+    return sqrt(a * b)

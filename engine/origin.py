@@ -15,17 +15,18 @@ from numba.extending import overload
 
 from engine.jit import kernel
 from engine.lanes import const
+from engine.simd import Lanes
 from engine.vec2 import Vec2
 
 
 def origin_of(body: Any, lane: Any) -> Vec2:
     """The point from which positions around `body` are reckoned, for a solver of that lane [m]."""
-    return Vec2(body.center_x, body.center_y) if isinstance(lane, np.float32) else Vec2(0.0, 0.0)
+    return Vec2(body.center_x, body.center_y) if lane.dtype == np.float32 else Vec2(0.0, 0.0)
 
 
 @overload(origin_of)
 def _origin_of(body, lane):
-    if lane == types.float32:
+    if lane == types.float32 or lane == Lanes(types.float32):
         return lambda body, lane: Vec2(body.center_x, body.center_y)
     return lambda body, lane: Vec2(0.0, 0.0)
 

@@ -6,20 +6,12 @@ from engine.jit import kernel
 
 
 @kernel
-def drop_impossible(pairs, count, shapes, colliders):
-    """Takes out pairs of one body, and of shapes that no collider knows: two segments, say. Returns how many are left.
+def may_touch(shape1, shape2, colliders):
+    """Whether two shapes are of two bodies, and some collider knows their kinds: none knows two segments, say.
 
     colliders (K, K) int32: by the kinds of the two shapes which collider it is, -1 for none.
     """
-    kept = 0
-    for index in range(count):
-        shape1 = shapes[pairs[index, 0]]
-        shape2 = shapes[pairs[index, 1]]
-        if shape1.body != shape2.body and colliders[shape1.kind, shape2.kind] >= 0:
-            pairs[kept, 0] = pairs[index, 0]
-            pairs[kept, 1] = pairs[index, 1]
-            kept += 1
-    return kept
+    return shape1.body != shape2.body and colliders[shape1.kind, shape2.kind] >= 0
 
 
 @kernel

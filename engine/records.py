@@ -37,19 +37,27 @@ class Arbiter(NamedTuple):
 
 
 @kernel
-def write_contacts(arbiters, contacts, count, bodies, records):
-    """Writes the contacts of the first `count` arbiters as CONTACT_RECORD rows; returns how many there are."""
+def write_contacts(arbiters, contacts, count, bodies, motions, dt, records):
+    """Writes the contacts of the first `count` arbiters as CONTACT_RECORD rows; returns how many there are.
+
+    Positions are those of the step's beginning: body1 has moved on by v dt since.
+    """
     total = 0
     for index in range(count):
         arbiter = arbiters[index]
+        if arbiter.count == 0:
+            continue
+        body1, motion1 = bodies[arbiter.body1], motions[arbiter.body1]
+        x = body1.center_x - dt * np.float64(motion1.vx)
+        y = body1.center_y - dt * np.float64(motion1.vy)
         for i in range(arbiter.count):
             contact = contacts[index, i]
             record = records[total]
-            record.body1 = bodies[arbiter.body1].serial
+            record.body1 = body1.serial
             record.body2 = bodies[arbiter.body2].serial
             record.feature = contact.feature
-            record.x = contact.x
-            record.y = contact.y
+            record.x = x + contact.r1_x
+            record.y = y + contact.r1_y
             record.nx = arbiter.nx
             record.ny = arbiter.ny
             record.separation = contact.separation
@@ -63,7 +71,8 @@ def contact_records(state: State) -> np.ndarray:
     """(C,) CONTACT_RECORD: all contacts of the last step, in the solver's order."""
     table = state.arbiters
     records = empty(2 * table.count, CONTACT_RECORD)
-    total = write_contacts(table.rows, table.contacts, table.count, state.bodies.tables["bodies"], records)
+    bodies, motions = state.bodies.tables["bodies"], state.bodies.tables["motions"]
+    total = write_contacts(table.rows, table.contacts, table.count, bodies, motions, state.last_dt, records)
     return np.array(records[:total], copy=True)
 
 
@@ -89,24 +98,24 @@ def arbiter_list(world: World) -> list[Arbiter]:
     """The arbiters of the last step, in the solver's order: by the order of creation of body1, then of body2."""
     state = world._state
     result = []
-    for arbiter, contacts in zip(
-        state.arbiters.rows[: state.arbiters.count], state.arbiters.contacts[: state.arbiters.count], strict=True
-    ):
-        if int(arbiter["count"]) == 0:
-            continue
-        normal = Vec2(float(arbiter["nx"]), float(arbiter["ny"]))
+    table, k = state.arbiters, 0
+    records = contact_records(state)
+    for arbiter in table.rows[: table.count]:
+        count = int(arbiter["count"])
         points = tuple(
             Contact(
                 Vec2(float(contact["x"]), float(contact["y"])),
-                normal,
+                Vec2(float(contact["nx"]), float(contact["ny"])),
                 float(contact["separation"]),
-                float(contact["given_normal"]),
-                float(contact["given_tangent"]),
+                float(contact["normal_impulse"]),
+                float(contact["tangent_impulse"]),
                 int(contact["feature"]),
             )
-            for contact in contacts[: int(arbiter["count"])]
+            for contact in records[k : k + count]
         )
-        body1 = world._body_in_row(int(arbiter["body1"]))
-        body2 = world._body_in_row(int(arbiter["body2"]))
-        result.append(Arbiter(body1, body2, float(arbiter["friction"]), points))
+        k += count
+        if count:
+            body1 = world._body_in_row(int(arbiter["body1"]))
+            body2 = world._body_in_row(int(arbiter["body2"]))
+            result.append(Arbiter(body1, body2, float(arbiter["friction"]), points))
     return result

@@ -52,7 +52,7 @@ def state_hash(state: State) -> str:
     """64 hex digits over what physics means; equal for equal futures, whatever the capacity, padding or serials.
 
     In the order of creation: bodies' position, angle, velocity and sleep state, then the accumulated impulses of
-    contacts and of joints, with their keys. -0.0 counts as 0.0.
+    contacts, of joints and of their motors, with their keys. -0.0 counts as 0.0.
     """
     order = state.bodies.order
     bodies = state.bodies.tables["bodies"][order]
@@ -87,6 +87,8 @@ def state_hash(state: State) -> str:
         add(np.searchsorted(serials, state.bodies.tables["bodies"]["serial"][joints[name]]), "<i8")
     for name in ("impulse_x", "impulse_y"):
         add(joints[name], "<f8")
+    if state.joints.departing("motored"):
+        add(state.joints.ensure("motor_impulse")[state.joints.order], "<f8")
     return digest.hexdigest()
 
 

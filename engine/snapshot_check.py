@@ -142,11 +142,15 @@ def check_parts(living: np.ndarray) -> None:
 
 
 def check_joints(tables: Mapping[str, np.ndarray]) -> None:
-    """Joints have serials of their own and two living bodies."""
+    """Joints have serials of their own and two living bodies; motors are there or not, and of no negative torque."""
     check_serials("joints", "joints", tables)
     joints = tables["joints.joints"]
     joints = joints[joints["serial"] >= 0]
     check_rows("joints.joints", tables, joints["body1"], joints["body2"])
+    if not np.isin(tables.get("joints.motored", 0), (0, 1)).all():
+        raise refuse("joints.motored", "of 0 and 1")
+    if np.any(np.asarray(tables.get("joints.max_motor_torque", 0)) < 0):
+        raise refuse("joints.max_motor_torque", "of no negative torque")
 
 
 def check_fluids(tables: Mapping[str, np.ndarray]) -> None:

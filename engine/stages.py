@@ -10,27 +10,36 @@ from collections.abc import Callable
 
 import numpy as np
 
+from engine.atomics import new_counters
 from engine.constants import BIAS_FACTOR, BOUNDS_MARGIN, SLOP
 from engine.errors import StepError
-from engine.narrow_phase.recycling import choose
+from engine.narrow_phase import TOGETHER
+from engine.narrow_phase.recycling import choose_pairs, choose_together, write_boxes
+from engine.program import PARTS_A_THREAD
 from engine.settings import Settings
-from engine.shapes.placing import write_placements
+from engine.simd import WIDTH
 from engine.softness import stiffness
 from engine.solvers import SOLVERS
 from engine.state import State
 from engine.tables import SOFTNESS_FIELDS
+from engine.threads import share, shares, usable
 
 
 def broad_phase(state: State, settings: Settings) -> None:
     """Finds the pairs of shapes whose bounding boxes overlap."""
-    order, shapes, hulls = state.shapes.order, state.shapes.tables["shapes"], state.hulls.tables["hulls"]
-    bodies, motions = state.bodies.tables["bodies"], state.bodies.tables["motions"]
-    write_placements(order, shapes, bodies, motions, state.placements)
-    margin = BOUNDS_MARGIN + 0.5 * float(state.steps["margin"][0])
-    for write_bounds, ranks in state.bounds_plan:
-        write_bounds(ranks, order, shapes, hulls, state.placements, margin, state.bounds)
+    arguments = bounding(state)
+    for write_bounds, group in state.bounds_plan:
+        write_bounds(group, *arguments)
     if state.broad_phase.update(state.bounds):
         state.pairs_are_stale = True
+
+
+def bounding(state: State) -> tuple:
+    """What kernels that write bounding boxes take after the group of shapes."""
+    shapes, hulls = state.shapes.tables["shapes"], state.hulls.tables["hulls"]
+    bodies, motions = state.bodies.tables["bodies"], state.bodies.tables["motions"]
+    margin = BOUNDS_MARGIN + 0.5 * float(state.steps["margin"][0])
+    return shapes, hulls, bodies, motions, state.placements, margin, state.bounds
 
 
 def update_arbiters(state: State, settings: Settings) -> None:
@@ -41,20 +50,51 @@ def update_arbiters(state: State, settings: Settings) -> None:
 
 def narrow_phase(state: State, settings: Settings) -> None:
     """Finds where the shapes of each arbiter touch; those whose bodies hardly moved keep their contacts."""
-    table, chosen = state.arbiters, state.chosen
-    bodies, motions = state.bodies.tables["bodies"], state.bodies.tables["motions"]
+    chosen, arguments = state.chosen, colliding(state)
+    write_boxes(state.bounds, state.shapes.order, state.boxes)
+    for collide, indices, number in state.meetings:
+        count = _choose(state, indices, number)
+        chosen[count : count + WIDTH] = state.arbiters.nothing
+        threads = usable(state.threads, count) if collide in TOGETHER else 1
+        if threads > 1:
+            firsts = shares(count, PARTS_A_THREAD * threads, WIDTH)
+            share(threads, TOGETHER[collide], new_counters(2), firsts, chosen, *arguments)
+        elif count:
+            collide(chosen, 0, count, *arguments)
+
+
+def colliding(state: State) -> tuple:
+    """What colliders take after the arbiters to look at."""
+    table, bodies = state.arbiters, state.bodies.tables
     shapes, hulls = state.shapes.tables["shapes"], state.hulls.tables["hulls"]
-    for collide, indices in zip(state.colliders, state.indices, strict=True):
-        if len(indices):
-            count = choose(
-                indices, table.rows, table.contacts, state.ranks, state.bounds, shapes, bodies, motions, state.steps,
-                chosen,
-            )  # fmt: skip
-            if count:
-                collide(
-                    chosen, count, table.rows, table.contacts, shapes, hulls, state.placements, bodies, motions,
-                    state.steps,
-                )  # fmt: skip
+    return (
+        table.rows, table.contacts, shapes, hulls, state.placements, bodies["bodies"], bodies["motions"], state.steps,
+    )  # fmt: skip
+
+
+def choosing(state: State, indices: np.ndarray, chosen: np.ndarray) -> tuple:
+    """What `choose_pairs` takes after the first and the last of the indices to look at."""
+    table, bodies = state.arbiters, state.bodies.tables
+    return (
+        indices, table.rows, table.contacts, state.boxes, bodies["bodies"], bodies["motions"], state.steps, chosen,
+    )  # fmt: skip
+
+
+def _choose(state: State, indices: np.ndarray, number: int) -> int:
+    """Puts those of the arbiters at `indices` that need their contacts found anew into `chosen`: how many there are."""
+    chosen = state.chosen
+    arguments = choosing(state, indices, chosen)
+    threads = usable(state.threads, number)
+    if threads == 1:
+        return int(choose_pairs(0, number, *arguments))
+    parts = PARTS_A_THREAD * threads
+    firsts, counts = shares(number, parts, WIDTH), np.empty(parts, np.int64)
+    share(threads, choose_together, new_counters(2), firsts, counts, *arguments)
+    total = 0
+    for first, count in zip(firsts, counts, strict=False):
+        chosen[total : total + count] = chosen[first : first + count].copy()
+        total += int(count)
+    return total
 
 
 def apply_forces(state: State, settings: Settings) -> None:
@@ -75,9 +115,14 @@ def update_positions(state: State, settings: Settings) -> None:
     """Velocities change positions. StepError if a body's state is no longer finite."""
     lost = SOLVERS[settings.solver].update_positions(state, settings)
     if lost >= 0:
-        motions = state.bodies.tables["motions"]
-        unsolved = not np.isfinite([motions[name][lost] for name in ("vx", "vy", "w")]).all()
-        raise StepError(_describe_loss(state, lost, "solve constraints" if unsolved else "update positions"))
+        raise lost_in_solver(state, lost)
+
+
+def lost_in_solver(state: State, lost: int) -> StepError:
+    """The error to raise for a body, by row, that is no longer finite after its position was updated."""
+    motions = state.bodies.tables["motions"]
+    unsolved = not np.isfinite([motions[name][lost] for name in ("vx", "vy", "w")]).all()
+    return StepError(_describe_loss(state, lost, "solve constraints" if unsolved else "update positions"))
 
 
 STAGES: tuple[tuple[str, Callable[[State, Settings], None]], ...] = (

@@ -8,13 +8,18 @@ import numpy as np
 
 from engine.arbiters import ArbiterTable, follow_pairs, indices_by_collider, mix_friction
 from engine.broad_phase import BROAD_PHASES
+from engine.colouring import Layout, any_change, colour_joints, give_colours
 from engine.effects import BODY_PROPERTIES, EFFECTS, SHAPE_PROPERTIES
 from engine.effects.filters import drop_filtered
+from engine.effects.motors import MOTOR_COLUMNS
 from engine.mixing import RULES
 from engine.narrow_phase import COLLIDER_OF, COLLIDERS, TALK_COLLIDERS
-from engine.pairs import drop_impossible, drop_joined
+from engine.narrow_phase.recycling import BOX
+from engine.pairs import drop_joined
 from engine.settings import Settings
 from engine.shapes import BOUNDS
+from engine.shapes.placing import group_of
+from engine.simd import WIDTH
 from engine.solvers import SOLVERS
 from engine.storage import Storage
 from engine.tables import (
@@ -43,7 +48,7 @@ class State:
         self.bodies = Storage({"bodies": BODY, "motions": motion_dtype(precision)}, body_columns)
         self.shapes = Storage({"shapes": SHAPE}, shape_columns)
         self.hulls = Storage({"hulls": HULL})
-        self.joints = Storage({"joints": revolute_dtype(precision)})
+        self.joints = Storage({"joints": revolute_dtype(precision)}, MOTOR_COLUMNS)
         self.fluids = Storage({"fluids": FLUID})
         self.arbiters = ArbiterTable(precision, 0)
         self.spare_arbiters = ArbiterTable(precision, 0)  # where the next change of pairs is written
@@ -57,6 +62,14 @@ class State:
         self.suppressed: frozenset[str] = frozenset()  # effects whose code does not run though something does
         self.gathered: dict[str, Any] = {}  # what effects read off the content, until it changes
         self.diagnosed_at: int | None = None  # step count when somebody asked for diagnostics
+        self.layout = Layout()  # touching arbiters by colour
+        self.joint_layout = Layout()
+        self.solve_plan: Any = None  # what the solver reads off content and colours, until either changes
+        self.addresses: dict[Any, int] = {}  # of compiled kernels, see run.py; until content changes
+        self.repetition: Any = None  # what steps in a row read off all that, see run.py
+        self.pause = self.pause_left = 0  # steps for which Python does not try that again
+        self.threads = 1  # that a step may use
+        self.lanes = WIDTH  # contacts and joints that are solved at once: 8, or 1 to compare
         self.forget_broad_phase()
         self.stale = True  # content or settings changed since the last refresh
         self.prepared_for: Settings | None = None
@@ -76,10 +89,12 @@ class State:
 
     def refresh(self, settings: Settings) -> None:
         """Reads off the content what the stages need: which effects, which shapes, who moves, who ignores whom."""
-        for storage in (self.bodies, self.shapes):
+        for storage in (self.bodies, self.shapes, self.joints):
             storage.drop_idle_columns()
         self.effects = self.active(settings)
         self.gathered = {}
+        self.solve_plan = None
+        self.addresses = {}
         for effect in EFFECTS:
             if effect.name in self.forced:
                 for properties, storage in ((effect.body, self.bodies), (effect.shape, self.shapes)):
@@ -90,6 +105,7 @@ class State:
         self._refresh_pairs(settings)
         joined = "revolute joints" in self.effects
         self.active_joints = self.joints.tables["joints"] if joined else None
+        self._refresh_joints()
         self.forces = [e.apply for e in EFFECTS if e.apply is not None and e.name in self.effects]
         self.stale = False
 
@@ -104,9 +120,17 @@ class State:
         self.moving = order[kinds != 0]  # rows of bodies that may have a velocity
         weighs = self.bodies.tables["motions"]["inverse_mass"][order] > 0
         self.dynamic = order[(kinds == DYNAMIC) & weighs]  # what has no mass feels no force
+        self.body_lanes = self._in_eights(order)
+        self.moving_lanes = self._in_eights(self.moving)
+        self.dynamic_lanes = self._in_eights(self.dynamic)
         self.gravity_scales = self.column("gravity scale", self.bodies, "gravity_scale")
         self.linear_damping = self.column("linear damping", self.bodies, "linear_damping")
         self.angular_damping = self.column("angular damping", self.bodies, "angular_damping")
+
+    def _in_eights(self, rows: np.ndarray) -> np.ndarray:
+        """Rows of bodies, filled up to a multiple of eight with nobody's."""
+        nobody = len(self.bodies.tables["bodies"]) - 1
+        return np.append(rows, np.full(-len(rows) % WIDTH, nobody))
 
     def _refresh_shapes(self, settings: Settings) -> None:
         order = self.shapes.order
@@ -116,7 +140,10 @@ class State:
         self.ranks = np.zeros(len(shapes), np.int64)
         self.ranks[order] = np.arange(len(order))
         self.bounds = np.zeros((4, len(order)), np.float32)
-        self.bounds_plan = [(BOUNDS[kind], np.flatnonzero(kinds == kind)) for kind in np.unique(kinds)]
+        self.boxes = empty(len(shapes), BOX)
+        self.bounds_plan = [
+            (BOUNDS[kind], group_of(np.flatnonzero(kinds == kind), order, shapes)) for kind in np.unique(kinds)
+        ]
         body_kinds = self.bodies.tables["bodies"]["kind"][shapes["body"][order]]
         self.groups = np.where(body_kinds == DYNAMIC, 1, np.where(body_kinds == KINEMATIC, 2, 0)).astype(np.uint8)
 
@@ -130,10 +157,19 @@ class State:
         talk = SOLVERS[settings.solver].talk_clipping
         self.colliders = TALK_COLLIDERS if talk else COLLIDERS
         self.joined = self._joined_pairs() if "joined without colliding" in self.effects else None
-        several = len(np.unique(shapes["body"][order])) < len(order)
-        lines = bool(np.any(COLLIDER_OF[shapes["kind"][order], shapes["kind"][order]] < 0))
-        self.impossible = several or lines
-        self.pairs_are_stale = True
+        self.pairs_are_stale = self.friction_is_stale = True
+
+    def _refresh_joints(self) -> None:
+        """Which joints can be solved side by side."""
+        joints, order = self.joints.tables["joints"], self.joints.order
+        nobody = len(self.bodies.tables["bodies"]) - 1
+        joints["body1"][-1] = joints["body2"][-1] = nobody
+        colours = np.empty(len(order), np.int32)
+        taken = np.zeros(nobody + 1, np.int64)
+        colour_joints(joints, order, self.bodies.tables["motions"], taken, colours)
+        self.joint_layout.arrange(colours, self.lanes, -1)
+        rows = np.append(order, len(joints) - 1)  # -1, nothing, is the last
+        self.joint_slots = rows[self.joint_layout.slots].astype(np.int32)
 
     def _joined_pairs(self) -> np.ndarray:
         """(P, 2) int64 serials of bodies joined without colliding, ascending."""
@@ -149,26 +185,42 @@ class State:
         """Makes the arbiters those of the pairs that the broad phase holds."""
         self.pairs_are_stale = False
         shapes = self.shapes.tables["shapes"]
-        pairs = np.array(self.broad_phase.pairs[: self.broad_phase.pair_count])
-        count = len(pairs)
-        if self.impossible:
-            count = drop_impossible(pairs, count, shapes, COLLIDER_OF)
+        pairs, count = self.broad_phase.pairs, self.broad_phase.pair_count
+        if self.joined is not None or "filters" in self.effects:
+            pairs = np.array(pairs[:count])  # the broad phase keeps those that are dropped here
         if self.joined is not None:
             count = drop_joined(pairs, count, shapes, self.bodies.tables["bodies"], self.joined)
         if "filters" in self.effects:
             columns = (self.shapes.ensure(name) for name in ("category", "mask", "group"))
             count = drop_filtered(pairs, count, *columns)
         old, new = self.arbiters, self.spare_arbiters
-        if len(new.rows) < count:
+        if new.capacity < count:
             new = ArbiterTable(self.precision, max(16, count + count // 2))
-        follow_pairs(
-            pairs, count, shapes, COLLIDER_OF, old.rows, old.contacts, old.count, new.rows, new.contacts
+        rule = RULES.index(settings.friction_mixing)
+        new.count = count = follow_pairs(
+            pairs, count, np.ascontiguousarray(shapes["serial"]), shapes, COLLIDER_OF, rule, old.rows, old.contacts,
+            old.count, new.rows, new.contacts, new.kinds,
         )  # fmt: skip
-        new.count = count
+        if self.friction_is_stale:
+            mix_friction(new.rows, count, shapes, rule)
+            self.friction_is_stale = False
+        new.point_at_nobody(len(self.bodies.tables["bodies"]), len(shapes))
         self.arbiters, self.spare_arbiters = new, old
-        mix_friction(new.rows, count, shapes, RULES.index(settings.friction_mixing))
-        self.indices = indices_by_collider(new.rows, count, len(COLLIDERS))
-        self.chosen = np.empty(count, np.int64)
+        self.colours_are_stale = True
+        self.indices = indices_by_collider(new.kinds[:count], new.nothing, len(COLLIDERS))
+        self.meetings = [(collide, *own) for collide, own in zip(self.colliders, self.indices, strict=True) if own[1]]
+        self.chosen = new.chosen
+
+    def follow_colours(self) -> None:
+        """Gives what has begun to touch a colour, and takes that of what has parted."""
+        table = self.arbiters
+        if not self.colours_are_stale and not any_change(table.rows, table.count):
+            return
+        motions = self.bodies.tables["motions"]
+        give_colours(table.rows, table.count, motions, np.empty(len(motions), np.int64))
+        self.layout.arrange(table.rows["colour"][: table.count], self.lanes, table.nothing)
+        self.colours_are_stale = False
+        self.solve_plan = None
 
     def drop_arbiters(self, serials: Any) -> None:
         """Forgets the contacts of shapes that are going."""
@@ -211,8 +263,8 @@ class State:
             storage.load({key.removeprefix(prefix): rows for key, rows in saved.items() if key.startswith(prefix)})
         count = len(saved["arbiters"])
         self.arbiters = ArbiterTable(self.precision, count)
-        self.arbiters.rows[:] = saved["arbiters"]
-        self.arbiters.contacts[:] = saved["contacts"]
+        self.arbiters.rows[:count] = saved["arbiters"]
+        self.arbiters.contacts[:count] = saved["contacts"]
         self.arbiters.count = count
         self.step_count = int(saved["step_count"])
         self.time = float(saved["time"])

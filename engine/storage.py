@@ -1,5 +1,7 @@
 """Rows that come and go: capacity growth, the order of creation, and serials that are never given twice.
 
+The last row of a table is never given to anything: it stands for nobody where eight rows are worked on at once.
+
 A column is a table that need not be there: it holds what few things have, such as restitution, and exists only while
 some thing departs from the default.
 
@@ -168,9 +170,9 @@ class Storage:
 
     def _reserve(self, count: int) -> None:
         capacity = len(self.tables[self.main])
-        if count <= capacity:
+        if count < capacity:
             return
-        while capacity < count:
+        while capacity <= count:
             capacity *= 2
         for name, table in self.tables.items():
             larger = empty(capacity, table.dtype)

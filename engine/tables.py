@@ -153,10 +153,29 @@ def placement_dtype(precision: str) -> np.dtype:
 
 @cache
 def arbiter_dtype(precision: str) -> np.dtype:
-    """Two shapes that are near each other, and what their contacts share. It lives as long as they are near."""
+    """Two shapes that are near each other, and what their contacts share. It lives as long as they are near.
+
+    What lanes read stands first, eight numbers and eight numbers: see engine/rows.py, load_row.
+    """
     real = REALS[precision]
     return np.dtype(
         [
+            ("nx", real),  # unit normal, from body1 to body2
+            ("ny", real),
+            ("friction", real),  # of the pair
+            ("rolling_impulse", real),  # accumulated [N m s]
+            ("found_nx", real),  # the normal when the contacts were found
+            ("found_ny", real),
+            ("apart_x", real),  # from the centre of body1 to that of body2, likewise [m]
+            ("apart_y", real),
+            ("cosine1", real),  # of the angles of body1 and body2, likewise
+            ("sine1", real),
+            ("cosine2", real),
+            ("sine2", real),
+            ("radius1", real),  # how far the outline of each shape is rounded [m]
+            ("radius2", real),
+            ("fewest", real),  # contacts that may be kept: 1 where a shape is a circle, else 2
+            ("clearance", real),  # they are this far apart at least, where they do not touch; 0: not known [m]
             ("serial1", np.int64),  # serials of the shapes, serial1 < serial2: the arbiter's key and its order
             ("serial2", np.int64),
             ("shape1", np.int32),  # rows of the shapes
@@ -165,53 +184,29 @@ def arbiter_dtype(precision: str) -> np.dtype:
             ("body2", np.int32),
             ("collider", np.int32),  # which kind of pair: index into COLLIDERS
             ("count", np.int32),  # contacts, 0 to 2
-            ("nx", real),  # unit normal, from body1 to body2
-            ("ny", real),
-            ("friction", real),  # of the pair
-            ("rolling_impulse", real),  # accumulated [N m s]
-            ("recyclable", np.int32),  # 1: what follows is where the bodies were when the contacts were found
-            ("found_nx", real),  # the normal
-            ("found_ny", real),
-            ("apart_x", real),  # from the centre of body1 to that of body2 [m]
-            ("apart_y", real),
-            ("cosine1", real),  # of their angles
-            ("sine1", real),
-            ("cosine2", real),
-            ("sine2", real),
+            ("colour", np.int32),  # of its contacts, see colouring.py; -1: none, they do not touch
+            ("recyclable", np.int32),  # 1: its contacts may be kept while its bodies hardly move
         ]
     )
 
 
 @cache
 def contact_dtype(precision: str) -> np.dtype:
-    """One contact point; an arbiter's two stand in one row of a (arbiters, 2) table."""
+    """One contact point; an arbiter's two stand in one row of a (arbiters, 2) table. Eight numbers first, as above."""
     real = REALS[precision]
     return np.dtype(
         [
-            ("x", np.float64),  # position when it was found [m]
-            ("y", np.float64),
-            ("feature", np.int32),  # which corners or edges meet, see narrow_phase/manifold_points.py
-            ("r1_x", real),  # position relative to the centres of body1 and body2 [m]
+            ("r1_x", real),  # position relative to the centres of body1 and body2, when it was found [m]
             ("r1_y", real),
             ("r2_x", real),
             ("r2_y", real),
             ("separation", real),  # < 0: overlap [m]
             ("found", real),  # separation when the contact was found, see recycling.py [m]
-            ("found1_x", real),  # r1 and r2 likewise
-            ("found1_y", real),
-            ("found2_x", real),
-            ("found2_y", real),
             ("normal_impulse", real),  # accumulated P_n: what the next step starts from, for a whole step [N s]
             ("tangent_impulse", real),  # accumulated P_t [N s]
             ("given_normal", real),  # what the last step gave in all [N s]
             ("given_tangent", real),
-            ("normal_mass", real),  # effective mass along the normal [kg]
-            ("tangent_mass", real),  # and along the tangent [kg]
-            ("normal_arm1", real),  # r1 x n: how an impulse along the normal turns body1 [m]
-            ("normal_arm2", real),
-            ("tangent_arm1", real),  # r1 x t [m]
-            ("tangent_arm2", real),
-            ("bias", real),  # velocity that removes overlap [m/s]
+            ("feature", np.int32),  # which corners or edges meet, see narrow_phase/manifold_points.py
         ]
     )
 

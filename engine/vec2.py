@@ -15,6 +15,8 @@ from numba.core import types
 from numba.extending import overload
 
 from engine.jit import kernel
+from engine.lanes import select
+from engine.simd import Lanes
 
 
 class Vec2(NamedTuple):
@@ -57,6 +59,10 @@ def _is_vec2(value: Any) -> bool:
     return getattr(value, "instance_class", None) is Vec2
 
 
+def _is_lane(value: Any) -> bool:
+    return isinstance(value, (types.Float, Lanes))
+
+
 @overload(operator.add)
 def _add(a, b):
     if _is_vec2(a) and _is_vec2(b):
@@ -73,9 +79,9 @@ def _sub(a, b):
 
 @overload(operator.mul)
 def _mul(a, b):
-    if _is_vec2(a) and isinstance(b, types.Float):
+    if _is_vec2(a) and _is_lane(b):
         return lambda a, b: Vec2(a.x * b, a.y * b)
-    if isinstance(a, types.Float) and _is_vec2(b):
+    if _is_lane(a) and _is_vec2(b):
         return lambda a, b: Vec2(a * b.x, a * b.y)
     return None
 
@@ -97,6 +103,12 @@ def dot(a, b):
 def cross(a, b):
     """z component of a x b."""
     return a.x * b.y - a.y * b.x
+
+
+@kernel
+def choose(condition, a, b):
+    """The vector a where the condition holds, else b."""
+    return Vec2(select(condition, a.x, b.x), select(condition, a.y, b.y))
 
 
 @kernel

@@ -26,11 +26,13 @@ LAYERS = {
 EXCEPTIONS = {
     "engine/jit.py": {"llvmlite"},
     "engine/simd.py": {"llvmlite"},
+    "engine/rows.py": {"llvmlite"},
+    "engine/atomics.py": {"llvmlite"},
     # The command line wires everything together ...
     "sandbox/cli.py": {"web", "recordings", "viser", "rerun"},
     "sandbox/verbs/": {"web", "recordings", "viser", "rerun"},
     # ... and the laboratory draws diagrams, and compares with engines that are an extra.
-    "sandbox/lab/": {"pymunk", "matplotlib"},
+    "sandbox/lab/": {"pyb2d3", "pymunk", "matplotlib"},
 }
 
 

@@ -1,24 +1,27 @@
-"""The dynamic tree: which pairs of pieces may touch, for thousands of bodies of which few move far.
+"""The dynamic tree: which pairs of pieces may touch, for thousands of bodies.
 
 Every piece has a fat box, larger than its own by a margin. As long as it stays inside, nothing is done for it. When it
 leaves, it gets a new fat box and is looked up in two trees of boxes: one of what nothing pushes (static and kinematic),
-one of dynamic bodies. The pairs are exactly those whose fat boxes overlap, one of them dynamic: they follow from the
-fat boxes alone, whatever the trees look like. So a snapshot needs the fat boxes and nothing else of this.
+one of dynamic bodies. Where many leave at once, all pairs are found anew instead, see blocks.py. The pairs are exactly
+those whose fat boxes overlap, one of them dynamic: they follow from the fat boxes alone, whatever the trees look like.
+So a snapshot needs the fat boxes and nothing else of this.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
+from engine.broad_phase.blocks import Blocks, fill, find_all_keys, sort_keys
 from engine.broad_phase.tree import Tree
-from engine.broad_phase.tree_build import build
+from engine.broad_phase.tree_build import build, fit
 from engine.broad_phase.tree_leaves import DYNAMIC_GROUP, carry_over, fatten, mark_outside, match, place
 from engine.broad_phase.tree_nodes import NODE, remove
 from engine.broad_phase.tree_pairs import find_keys, merge, renumber, write_pairs
 from engine.tables import empty
 
 REBUILD_SHARE = 0.25  # part of the leaves new or gone at once from which building anew is cheaper than one by one
-IN_PLACE_SHARE = 0.1  # part of the leaves moved at once from which they stay where they are in the tree, see `place`
+IN_PLACE_SHARE = 0.01  # part of the leaves moved at once from which they stay where they are in the tree, see `place`
+CROWD_SHARE = 0.06  # part of the leaves moved at once from which all pairs are found anew, see blocks.py
 
 
 class DynamicTree:
@@ -42,6 +45,7 @@ class DynamicTree:
         self._flags = np.empty(0, np.bool_)
         self._stack = np.empty((2, 3), np.int64)
         self._hand = empty(1, NODE)
+        self._blocks: Blocks | None = None  # of all leaves; None: to be made anew
         self._changed = False
 
     def sync(self, rows: np.ndarray, serials: np.ndarray, groups: np.ndarray) -> None:
@@ -63,6 +67,9 @@ class DynamicTree:
         self._stack = np.empty((len(rows) + 2, 3), np.int64)
         for which in rebuild:
             self._build(which)
+        if gone or len(now) < len(rows):
+            self._blocks = None
+            self.trees[0].in_order = self.trees[1].in_order = False
         if gone or (len(now) > 0 and now[-1] != len(now) - 1):  # ranks have changed
             kept = renumber(self._keys, self.pair_count, now)
             self._changed |= kept != self.pair_count
@@ -96,6 +103,10 @@ class DynamicTree:
         self._follow(np.arange(len(self.rows)))
         self._changed = False
 
+    def borders(self) -> tuple[np.ndarray, np.ndarray]:
+        """What `mark_outside` takes beside the tight boxes: the fat ones, (4, S), and room for flags, until a sync."""
+        return self._fat, self._flags
+
     def fat_bounds(self) -> np.ndarray:
         """A copy of the fat boxes, (S, 4) float32 in the order of `rows`: lower x, lower y, upper x, upper y [m]."""
         return np.ascontiguousarray(self._fat.T)
@@ -116,10 +127,25 @@ class DynamicTree:
     def _follow(self, moved: np.ndarray) -> None:
         """Brings trees and pairs up to date with the fat boxes of the leaves that have moved."""
         pushed = self._pushed[moved] != 0
+        crowd = len(moved) > CROWD_SHARE * len(self.rows)
         for which, leaves in enumerate((moved[~pushed], moved[pushed])):
-            if len(leaves) > 0:
+            if crowd:
+                self._fit(which, leaves)
+            elif len(leaves) > 0:
                 self._place(which, leaves)
-        self._find_pairs(moved)
+        if crowd:
+            self._find_all_pairs()
+        else:
+            self._find_pairs(moved)
+
+    def _fit(self, which: int, moved: np.ndarray) -> None:
+        """Brings one tree up to date, and in order, of which many leaves have moved."""
+        tree = self.trees[which]
+        if not tree.in_order:
+            self._build(which)
+        elif len(moved) > 0:
+            if tree.costs_more(fit(tree.nodes, tree.table, self._fat, self._node_of, moved)):
+                self._build(which)
 
     def _place(self, which: int, moved: np.ndarray) -> None:
         """Brings one tree up to date."""
@@ -130,6 +156,8 @@ class DynamicTree:
             return
         tree.reserve(tree.count + new)
         in_place = len(moved) > IN_PLACE_SHARE * tree.count
+        if new or not in_place:
+            tree.in_order = False
         place(tree.nodes, tree.table, self._fat, self._node_of, moved, in_place, self._hand)
         if tree.is_degraded():
             self._build(which)
@@ -140,6 +168,29 @@ class DynamicTree:
         leaves = np.flatnonzero((self._pushed == which) & (self._fat[0] <= self._fat[2]))
         tree.reserve(len(leaves))
         build(tree.nodes, tree.table, self._fat, self._node_of, leaves, self._stack)
+        tree.in_order = True
+        self._blocks = None
+
+    def _find_all_pairs(self) -> None:
+        """Finds all pairs anew."""
+        if self._blocks is None:
+            leaves = (np.flatnonzero(self._pushed == which) for which in (1, 0))
+            self._blocks = Blocks(self._fat, *leaves)
+        blocks = self._blocks
+        fill(self._fat, blocks.leaves, blocks.above, blocks.boxes)
+        while True:
+            number = find_all_keys(
+                *(blocks.boxes, blocks.leaves, blocks.below, blocks.last, blocks.above, blocks.dynamic),
+                *(blocks.stack, self._found),
+            )
+            if number >= 0:
+                break
+            self._found = np.empty(max(2 * len(self._found), 1024), np.int64)
+        if len(self._merged) < number:
+            self._merged = np.empty(2 * number, np.int64)
+        sort_keys(self._found, number, np.empty(len(self.rows), np.int64), self._merged)
+        self._merged, self._found = self._found, self._merged
+        self._take_keys(number)
 
     def _find_pairs(self, moved: np.ndarray) -> None:
         """Looks the moved leaves up and merges what they meet with the pairs of all others."""
@@ -159,7 +210,10 @@ class DynamicTree:
         found.sort(kind="stable")  # most of them are in order: one leaf after the other was looked up
         if len(self._merged) < self.pair_count + number:
             self._merged = np.empty(2 * (self.pair_count + number), np.int64)
-        total = merge(self._keys, self.pair_count, found, self._flags, self._merged)
+        self._take_keys(merge(self._keys, self.pair_count, found, self._flags, self._merged))
+
+    def _take_keys(self, total: int) -> None:
+        """Makes the pairs those of the keys in `_merged`."""
         if not np.array_equal(self._keys[: self.pair_count], self._merged[:total]):
             self._keys, self._merged, self.pair_count = self._merged, self._keys, total
             self._changed = True

@@ -21,6 +21,7 @@ class Tree:
         self.table = empty(1, TREE)
         self.table[0] = (0, 2, -1, 0, 0, 0.0)
         self.nodes["child"] = self.nodes["parent"] = -1
+        self.in_order = True  # no leaf came or went since: children stand after their parents
 
     @property
     def count(self) -> int:
@@ -38,6 +39,11 @@ class Tree:
         if tree["changes"] - tree["checked"] < CHECK_SHARE * tree["count"] or tree["count"] < 2:
             return False
         self.table["checked"] = tree["changes"]
+        return self.costs_more(total_size(self.nodes, self.table))
+
+    def costs_more(self, total: float) -> bool:
+        """Whether it should be built anew, by the sum of the half perimeters of its inner nodes [m]."""
+        tree = self.table[0]
         if tree["changes"] > STALE_ROUNDS * tree["count"]:
             return True
-        return bool(total_size(self.nodes, self.table) > DEGRADED * tree["cost"] * tree["count"])
+        return bool(total > DEGRADED * tree["cost"] * tree["count"])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from engine.broad_phase.tree_nodes import HUGE, total_size, wrap
+from engine.broad_phase.tree_nodes import HUGE, size, wrap
 from engine.jit import kernel
 
 
@@ -41,6 +41,27 @@ def divide(fat, order, begin, end):
 
 
 @kernel
+def wrap_all(nodes, trees):
+    """Fits all boxes around what is below, where children stand after their parents. Returns what total_size does."""
+    total = 0.0
+    for i in range(trees[0].top - 1, -1, -1):
+        if nodes[i].child >= 0:
+            wrap(nodes, i)
+            total += size(nodes[i])
+    return total
+
+
+@kernel
+def fit(nodes, trees, fat, node_of, moved):
+    """Takes the moved leaves of a tree to where they are now, all at once; see `wrap_all`, whose result it returns."""
+    trees[0].changes += len(moved)
+    for leaf in moved:
+        node = nodes[node_of[leaf]]
+        node.lower_x, node.lower_y, node.upper_x, node.upper_y = fat[0, leaf], fat[1, leaf], fat[2, leaf], fat[3, leaf]
+    return wrap_all(nodes, trees)
+
+
+@kernel
 def build(nodes, trees, fat, node_of, order, stack):
     """Makes a tree of the leaves in `order` anew.
 
@@ -74,7 +95,4 @@ def build(nodes, trees, fat, node_of, order, stack):
         stack[waiting, 0], stack[waiting, 1], stack[waiting, 2] = pair, begin, middle_of_order
         stack[waiting + 1, 0], stack[waiting + 1, 1], stack[waiting + 1, 2] = pair + 1, middle_of_order, end
         waiting += 2
-    for i in range(tree.top - 1, -1, -1):  # children stand after their parents
-        if nodes[i].child >= 0:
-            wrap(nodes, i)
-    tree.cost = total_size(nodes, trees) / max(tree.count, 1)
+    tree.cost = wrap_all(nodes, trees) / max(tree.count, 1)

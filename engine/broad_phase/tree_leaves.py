@@ -75,12 +75,26 @@ def mark_outside(bounds, fat, flags):
 
 
 @kernel
+def outruns(bounds, fat, leaf, margin):
+    """Whether a leaf has gone farther than its old margin and the new one together: in the next step, it will leave
+    the new one as well.
+    """
+    for side in range(2):
+        lower = fat[side, leaf] - bounds[side, leaf]  # how far the old box reached beyond the new
+        upper = bounds[side + 2, leaf] - fat[side + 2, leaf]
+        # half of their difference is how far it has gone, half of their sum the old margin, less than 0 where it turned
+        if abs(upper - lower) + min(upper + lower, np.float32(0)) > 2 * margin:
+            return True
+    return False
+
+
+@kernel
 def fatten(bounds, fat, groups, moved):
-    """New fat boxes for the leaves that have moved. What cannot move needs no margin."""
+    """New fat boxes for the leaves that have moved. No margin for what cannot move, and what would leave it at once."""
     for leaf in moved:
         longest = max(bounds[2, leaf] - bounds[0, leaf], bounds[3, leaf] - bounds[1, leaf])
         margin, relative = min(MARGIN_MAX, MARGIN_SHARE * longest), MARGIN_RELATIVE
-        if groups[leaf] == STATIC_GROUP:
+        if groups[leaf] == STATIC_GROUP or (fat[0, leaf] <= fat[2, leaf] and outruns(bounds, fat, leaf, margin)):
             margin = relative = np.float32(0)
         for side in range(2):
             lower, upper = bounds[side, leaf], bounds[side + 2, leaf]

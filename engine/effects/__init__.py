@@ -14,6 +14,7 @@ from engine.effects.explosion import EXPLOSION
 from engine.effects.filters import FILTERS
 from engine.effects.magnets import MAGNETS
 from engine.effects.motion import ANGULAR_DAMPING, GRAVITY, GRAVITY_SCALE, LINEAR_DAMPING
+from engine.effects.motors import REVOLUTE_MOTORS
 from engine.effects.others import DIAGNOSTICS, PASSING, REVOLUTE
 from engine.effects.point_gravity import POINT_GRAVITY
 
@@ -34,6 +35,7 @@ EFFECTS: tuple[Effect, ...] = (
     CONVEYOR,
     FILTERS,
     REVOLUTE,
+    REVOLUTE_MOTORS,
     PASSING,
     DIAGNOSTICS,
 )

@@ -89,6 +89,42 @@ class RevoluteJoint:
         """Whether its two bodies collide with each other."""
         return bool(self._joint["collide_connected"])
 
+    @property
+    def motor_speed(self) -> float | None:
+        """At which the motor turns body2 over body1 [rad/s]; None: there is no motor."""
+        return self._motor("motor_speed") if self._motor("motored") else None
+
+    @motor_speed.setter
+    def motor_speed(self, value: float | None) -> None:
+        had = bool(self._motor("motored"))
+        self._set_motor(value, self.max_motor_torque)
+        if (value is not None) != had:
+            self.world._content_changed()
+
+    @property
+    def max_motor_torque(self) -> float:
+        """Of the motor [N m]."""
+        return self._motor("max_motor_torque")
+
+    @max_motor_torque.setter
+    def max_motor_torque(self, value: float) -> None:
+        self._set_motor(self.motor_speed, value)
+
+    @property
+    def motor_torque(self) -> float:
+        """What the last step's motor gave body2, and body1 the other way, on average [N m]."""
+        dt = self.world._state.last_dt
+        return self._motor("motor_given") / dt if dt > 0.0 else 0.0
+
+    def _motor(self, name: str) -> float:
+        self._check()
+        return float(self.world._state.joints.get(name, self._row))
+
+    def _set_motor(self, speed: float | None, torque: float) -> None:
+        self._check()
+        for name, value in checked_motor(self.world.precision, speed, torque).items():
+            self.world._state.joints.put(name, self._row, value)
+
     def _check(self) -> None:
         if not self.alive:
             raise ValueError(f"joint = RevoluteJoint {self.serial}: must be a living joint, this one was destroyed")
@@ -97,3 +133,14 @@ class RevoluteJoint:
     def _joint(self) -> Any:
         self._check()
         return self.world._state.joints.tables["joints"][self._row]
+
+
+def checked_motor(precision: str, speed: float | None, torque: float) -> dict[str, float]:
+    """A motor's columns. ValueError names what cannot be; without a speed there is none, and nothing that it gave."""
+    torque = validate.non_negative("max_motor_torque", torque)
+    validate.in_range(precision, max_motor_torque=(torque,))
+    if speed is None:
+        return {"motored": 0, "motor_speed": 0.0, "max_motor_torque": torque, "motor_impulse": 0.0, "motor_given": 0.0}
+    speed = validate.number("motor_speed", speed, "a finite number, or None")
+    validate.in_range(precision, motor_speed=(speed,))
+    return {"motored": 1, "motor_speed": speed, "max_motor_torque": torque}

@@ -10,6 +10,7 @@ from __future__ import annotations
 from engine.constants import JOINT_BIAS_FACTOR
 from engine.impulses import pull, push
 from engine.jit import kernel
+from engine.joints import revolute_motor
 from engine.lanes import const, over
 from engine.origin import center_of, origin_of
 from engine.vec2 import Vec2, rotate, spin
@@ -31,8 +32,11 @@ def write_effective_mass(joint, motion1, motion2, r1, r2):
 
 
 @kernel
-def prepare(joints, order, bodies, motions, step):
-    """Turns the anchors, computes effective masses and biases, and starts from the impulses of the last step."""
+def prepare(joints, order, bodies, motions, motors, step):
+    """Turns the anchors, computes effective masses and biases, and starts from the impulses of the last step.
+
+    motors: None where no joint has one.
+    """
     for rank in range(len(order)):
         joint = joints[order[rank]]
         body1 = bodies[joint.body1]
@@ -65,18 +69,24 @@ def prepare(joints, order, bodies, motions, step):
         if step.warm_starting == 0:
             joint.impulse_x = 0
             joint.impulse_y = 0
+            if motors is not None:
+                motors[rank].impulse = 0
+        if motors is not None:
+            revolute_motor.start(motors[rank], motion1, motion2, motion1, motion2)
         impulse = Vec2(joint.impulse_x, joint.impulse_y)
         pull(motion1, r1, impulse)
         push(motion2, r2, impulse)
 
 
 @kernel
-def solve(joints, order, motions):
-    """One pass over the joints, each removing what is left of its anchors' relative velocity."""
+def solve(joints, order, motions, motors):
+    """One pass over the joints, each removing what is left of its anchors' relative velocity, its motor first."""
     for rank in range(len(order)):
         joint = joints[order[rank]]
         motion1 = motions[joint.body1]
         motion2 = motions[joint.body2]
+        if motors is not None:
+            revolute_motor.drive(motors[rank], motion1, motion2, motion1, motion2)
         r1 = Vec2(joint.r1_x, joint.r1_y)
         r2 = Vec2(joint.r2_x, joint.r2_y)
         v1 = Vec2(motion1.vx, motion1.vy)

@@ -1,8 +1,9 @@
 """Where two shapes touch: one file a kind of pair, one line here.
 
-A collider is a kernel `collide(chosen, count, arbiters, contacts, shapes, hulls, placements, bodies, motions, steps)`:
-it finds the contacts of the arbiters whose indices are the first `count` of `chosen`, all of its own kind of pair, in
-either order. A world calls only those whose pairs it holds, so a world of boxes neither compiles nor runs the others.
+A collider is a kernel `collide(chosen, first, last, arbiters, contacts, shapes, hulls, placements, bodies, motions,
+steps)`: it finds the contacts of the arbiters whose indices are chosen[first:last], all of its own kind of pair, in
+either order; `chosen` is filled up with the row of no arbiter, for those that work on eight at a time. A world calls
+only those whose pairs it holds, so a world of boxes neither compiles nor runs the others.
 """
 
 from __future__ import annotations
@@ -40,6 +41,9 @@ PAIRS = {
 }
 COLLIDERS = tuple(dict.fromkeys(PAIRS.values()))
 TALK_COLLIDERS = tuple(box_box_talk.collide if kernel is colliders.box_box else kernel for kernel in COLLIDERS)
+
+TOGETHER = {colliders.box_box: colliders.boxes_together, colliders.circle_circle: colliders.circles_together}
+"""Colliders that several threads share, where there are thousands of pairs."""
 
 
 def _table() -> np.ndarray:

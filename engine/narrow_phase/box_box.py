@@ -11,8 +11,8 @@ from typing import Any, NamedTuple
 from engine.jit import kernel
 from engine.lanes import absolute, const, maximum, select
 from engine.narrow_phase.edges import is_apart, meet_edges, place_meeting
-from engine.narrow_phase.manifold_points import FACE_TOLERANCE, choose, pack
-from engine.vec2 import Vec2, cross, dot, unrotate
+from engine.narrow_phase.manifold_points import FACE_TOLERANCE, pack
+from engine.vec2 import Vec2, choose, cross, dot, unrotate
 
 
 class FaceAxes(NamedTuple):
@@ -80,7 +80,8 @@ def touch_boxes(half1, center1, q1, half2, center2, q2):
     best2 = better_axis(offset2, half2, half1, absolute(cosine), absolute(sine))
     flip = best2.separation > best1.separation + const(FACE_TOLERANCE, one)  # the reference face belongs to box 2
     along_y = select(flip, best2.along_y, best1.along_y)
-    apart = is_apart(maximum(best1.separation, best2.separation), zero)
+    clearance = maximum(best1.separation, best2.separation)
+    apart = is_apart(clearance, zero)
     q = choose(flip, q2, q1)
     center = choose(flip, center2, center1)
     half = choose(flip, half2, half1)
@@ -102,7 +103,7 @@ def touch_boxes(half1, center1, q1, half2, center2, q2):
     corner = Vec2(height, -reach)  # where the reference face begins
     meeting = meet_edges(reach + reach, edge.a - corner, edge.b - corner, apart, zero, zero)
     origin = center + normal * height - Vec2(-normal.y, normal.x) * reach
-    return place_meeting(meeting, origin, normal, flip, start, end, edge.start, edge.end)
+    return place_meeting(meeting, origin, normal, flip, start, end, edge.start, edge.end, clearance)
 
 
 @kernel

@@ -113,13 +113,13 @@ def clip_to_sides(incident, center, half, side, along_y):
 
 
 @kernel
-def collide(chosen, count, arbiters, contacts, shapes, hulls, placements, bodies, motions, steps):
+def collide(chosen, first, last, arbiters, contacts, shapes, hulls, placements, bodies, motions, steps):
     """Finds the contacts of pairs of two boxes; see narrow_phase/__init__.py."""
     warm_starting = steps[0].warm_starting != 0
-    for k in range(count):
+    for k in range(first, last):
         index = chosen[k]
         arbiter = arbiters[index]
-        places = places_of(arbiter, placements, bodies)
+        places = places_of(arbiter, placements, bodies, placements[arbiter.shape1].cosine)
         place1 = placements[arbiter.shape1]
         place2 = placements[arbiter.shape2]
         shape1 = shapes[arbiter.shape1]
@@ -138,7 +138,7 @@ def collide_boxes(center1, q1, half1, center2, q2, half2):
     """The contacts of two boxes that overlap, on the reference face."""
     touching, axis = find_axis(center2 - center1, q1, half1, q2, half2)
     zero = const(0.0, q1.x)
-    nothing = Manifold(0, axis.normal, center1, zero, 0, center1, zero, 0)
+    nothing = Manifold(0, axis.normal, center1, zero, 0, center1, zero, 0, zero)
     if not touching:
         return nothing
 
@@ -160,7 +160,9 @@ def collide_boxes(center1, q1, half1, center2, q2, half2):
     feature_a, feature_b = pack_feature(a, flip), pack_feature(b, flip)
     if separation_a <= 0:
         count = 2 if separation_b <= 0 else 1
-        return Manifold(count, axis.normal, on_face_a, separation_a, feature_a, on_face_b, separation_b, feature_b)
+        return Manifold(
+            count, axis.normal, on_face_a, separation_a, feature_a, on_face_b, separation_b, feature_b, zero
+        )
     if separation_b <= 0:
-        return Manifold(1, axis.normal, on_face_b, separation_b, feature_b, on_face_b, separation_b, feature_b)
+        return Manifold(1, axis.normal, on_face_b, separation_b, feature_b, on_face_b, separation_b, feature_b, zero)
     return nothing

@@ -11,8 +11,8 @@ from typing import Any, NamedTuple
 from engine.jit import kernel
 from engine.lanes import const, maximum, minimum, select
 from engine.narrow_phase.edges import is_apart, meet_edges, place_meeting
-from engine.narrow_phase.manifold_points import FACE_TOLERANCE, choose, pack
-from engine.vec2 import Vec2, cross, dot, unrotate
+from engine.narrow_phase.manifold_points import FACE_TOLERANCE, pack
+from engine.vec2 import Vec2, choose, cross, dot, unrotate
 
 
 class Side(NamedTuple):
@@ -73,7 +73,8 @@ def touch_capsules(half1, radius1, center1, q1, half2, radius2, center2, q2):
     origin = center + axis * (half * sign)
     first = select(below, zero, one)  # the edge below runs from corner 0 to 1, the one above back
     other_first = select(up, one, zero)
-    return place_meeting(meeting, origin, normal, flip, first, one - first, other_first, one - other_first)
+    clearance = maximum(side1.separation, side2.separation) - (radius1 + radius2)
+    return place_meeting(meeting, origin, normal, flip, first, one - first, other_first, one - other_first, clearance)
 
 
 @kernel

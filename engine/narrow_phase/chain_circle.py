@@ -34,14 +34,14 @@ def collide_chain_circle(half_x, ghost1, ghost2, center1, q1, radius, center2, m
     after = piece.after
     if seen.x < -half_x and (before.convex or seen.x < -half_x - slack):
         if not beyond_start(before, seen):
-            return nothing(half_x)
+            return nothing(zero)
         return pack(round_touch(center1 + rotate(q1, before.end), zero, center2, radius, up), margin)
     if seen.x > half_x and (after.convex or seen.x > half_x + slack):
         if not beyond_end(after, seen):
-            return nothing(half_x)
+            return nothing(zero)
         return pack(round_touch(center1 + rotate(q1, after.end), zero, center2, radius, up), margin)
     if seen.y < 0:
-        return nothing(half_x)
+        return nothing(zero)
     middle = const(0.5, half_x) * (seen.y - radius)  # midway between the two surfaces
     point = center1 + rotate(q1, Vec2(seen.x, middle))
     return pack(one_point(up, point, seen.y - radius), margin)

@@ -16,8 +16,8 @@ from engine.narrow_phase.chain_piece import JOINT_SLACK, load_piece
 from engine.narrow_phase.edges import Meeting, is_apart, meet_edges, place_meeting
 from engine.narrow_phase.hull_hull import in_face_frame, see_from
 from engine.narrow_phase.hulls import after, corner, find_facing, normal_at, place_hull, separation_along
-from engine.narrow_phase.manifold_points import FACE_TOLERANCE, FAR, choose, nothing, pack
-from engine.vec2 import Vec2, cross, dot, unrotate
+from engine.narrow_phase.manifold_points import FACE_TOLERANCE, FAR, nothing, pack
+from engine.vec2 import Vec2, choose, cross, dot, unrotate
 
 
 class OnEdge(NamedTuple):
@@ -185,7 +185,7 @@ def collide_chain_hull(half_x, ghost1, ghost2, center1, q1, hull, count, radius,
     theirs = maximum(theirs1, theirs2)
     face = find_end_face(piece, hull, count)
     if maximum(maximum(own, theirs), face.separation) > margin + radius:
-        return nothing(lane)
+        return nothing(maximum(own, face.separation) - radius)
     tolerance = const(FACE_TOLERANCE, lane)
     flip = face.separation > maximum(own, theirs) + tolerance  # the reference edge is the shape's
     mine = theirs <= own + tolerance
@@ -193,11 +193,11 @@ def collide_chain_hull(half_x, ghost1, ghost2, center1, q1, hull, count, radius,
     middle = middle_of(hull, count)
     beside = (flip or not mine) and is_before(piece.before if at_start else piece.after, middle)
     if middle.y < 0 and not beside:
-        return nothing(lane)
+        return nothing(const(0.0, lane))
     if flip:
         found = on_end_face(piece, hull, count, radius, face)
     else:
         found = on_chain_face(piece, hull, count, radius, maximum(own, theirs), mine, at_start)
     edge = (found.start, found.end, found.other_start, found.other_end)
-    touch = place_meeting(found.meeting, found.origin, found.normal, flip, *edge)
+    touch = place_meeting(found.meeting, found.origin, found.normal, flip, *edge, const(0.0, lane))
     return pack(see_from(center1, q1, touch), margin)

@@ -13,10 +13,8 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-import numpy as np
-
 from engine.jit import kernel
-from engine.lanes import const
+from engine.lanes import const, sqrt
 from engine.vec2 import Vec2, dot
 
 FLAT = 1e-5
@@ -69,7 +67,7 @@ def load_piece(half_x, ghost1, ghost2):
 @kernel
 def direction(offset, least, fallback):
     """Whether an offset is shorter than `least` [m], and its direction, or else the fallback."""
-    length = np.sqrt(dot(offset, offset))
+    length = sqrt(dot(offset, offset))
     if length > least:
         return False, Vec2(offset.x / length, offset.y / length)
     return True, fallback

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from engine.jit import kernel
-from engine.lanes import absolute, clamp, const, maximum, select
-from engine.narrow_phase.manifold_points import TINY, choose, one_point, pack
-from engine.vec2 import Vec2, dot, rotate, unrotate
+from engine.lanes import absolute, clamp, const, maximum, select, sqrt
+from engine.narrow_phase.manifold_points import TINY, one_point, pack
+from engine.vec2 import Vec2, choose, dot, rotate, unrotate
 
 COINCIDENT = 1e-15
 """Points nearer than this are one [m]: the square of a smaller distance loses its digits in single precision."""
@@ -20,7 +18,7 @@ def round_touch(point, radius, center, other_radius, fallback):
     fallback: unit normal where the two coincide.
     """
     offset = center - point
-    distance = np.sqrt(dot(offset, offset))
+    distance = sqrt(dot(offset, offset))
     safe = maximum(distance, const(TINY, distance))
     apart = distance > const(COINCIDENT, distance)
     normal = choose(apart, Vec2(offset.x / safe, offset.y / safe), fallback)
@@ -54,7 +52,7 @@ def touch_box_circle(half, center1, q1, radius, center2):
     # in the quarter of the box where the centre is
     excess = Vec2(absolute(seen.x) - half.x, absolute(seen.y) - half.y)
     away = Vec2(maximum(excess.x, zero), maximum(excess.y, zero))
-    beyond = np.sqrt(dot(away, away))
+    beyond = sqrt(dot(away, away))
     safe = maximum(beyond, const(TINY, radius))
     outside = beyond > const(COINCIDENT, radius)
     through_x = excess.x > excess.y

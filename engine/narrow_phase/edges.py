@@ -14,12 +14,10 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-import numpy as np
-
 from engine.jit import kernel
-from engine.lanes import clamp, const, maximum, select
-from engine.narrow_phase.manifold_points import CORNER_GAP, FAR, ROUNDING, TINY, Touch, choose, feature_of
-from engine.vec2 import Vec2, dot
+from engine.lanes import clamp, const, maximum, select, sqrt
+from engine.narrow_phase.manifold_points import CORNER_GAP, FAR, ROUNDING, TINY, Touch, feature_of
+from engine.vec2 import Vec2, choose, dot
 
 
 class Meeting(NamedTuple):
@@ -71,7 +69,7 @@ def find_corners(length, a, b, apart, missed, rounded):
     t = clamp(along / maximum(dot(edge, edge), const(TINY, length)), zero, one)
     away = q + edge * t - foot
     squared = dot(away, away)
-    distance = np.sqrt(squared)
+    distance = sqrt(squared)
     safe = maximum(distance, const(TINY, length))
     # cores that overlap do not pass each other by so far: rounding hid that they are apart
     far = missed & (distance > const(CORNER_GAP, length))
@@ -121,11 +119,11 @@ def meet_edges(length, a, b, apart, radius, other_radius):
 
 
 @kernel
-def place_meeting(meeting, origin, normal, flip, start, end, other_start, other_end):
+def place_meeting(meeting, origin, normal, flip, start, end, other_start, other_end, clearance):
     """A meeting as seen from outside.
 
     origin: the reference edge's start; normal: its normal; flip: whether it belongs to shape 2; start, end: numbers of
-    its corners; other_start, other_end: those of the incident edge's (all lanes).
+    its corners; other_start, other_end: those of the incident edge's (all lanes); clearance: see Manifold.
     """
     zero = const(0.0, meeting.separation1)
     side = Vec2(-normal.y, normal.x)
@@ -140,4 +138,5 @@ def place_meeting(meeting, origin, normal, flip, start, end, other_start, other_
         origin + normal * meeting.point2.x + side * meeting.point2.y,
         meeting.separation2,
         feature_of(select(flip, other_end, start), select(flip, start, other_end)),
+        clearance,
     )

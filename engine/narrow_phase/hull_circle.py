@@ -24,7 +24,7 @@ def collide_hull_circle(hull, count, radius1, center1, q1, radius2, center2, mar
             height = above
             face = i
     if height > margin + radius1 + radius2:
-        return nothing(lane)
+        return nothing(height - radius1 - radius2)
     normal = normal_at(hull, face)
     start = corner(hull, face)
     length = cross(normal, corner(hull, after(face, count)) - start)

@@ -38,7 +38,7 @@ def touch_at_face(face, apart, hull, count, radius, other, other_count, other_ra
     b = in_face_frame(corner(other, facing_end), start, normal)
     meeting = meet_edges(length, a, b, apart, radius, other_radius)
     numbers = (const(face, length), const(end, length), const(facing, length), const(facing_end, length))
-    return place_meeting(meeting, start, normal, flip, *numbers)
+    return place_meeting(meeting, start, normal, flip, *numbers, const(0.0, length))
 
 
 @kernel
@@ -52,6 +52,7 @@ def see_from(center, q, touch):
         center + rotate(q, touch.point2),
         touch.separation2,
         touch.feature2,
+        touch.clearance,
     )
 
 
@@ -66,10 +67,10 @@ def collide_hulls(hull1, count1, radius1, center1, q1, hull2, count2, radius2, c
     best1 = find_face(hull1, count1, hull2, count2)
     reach = margin + radius1 + radius2
     if best1.separation > reach:
-        return nothing(lane)
+        return nothing(best1.separation - radius1 - radius2)
     best2 = find_face(hull2, count2, hull1, count1)
     if best2.separation > reach:
-        return nothing(lane)
+        return nothing(best2.separation - radius1 - radius2)
     flip = best2.separation > best1.separation + const(FACE_TOLERANCE, lane)  # the reference edge is hull 2's
     if flip:
         face, hull, count, radius = best2, hull2, count2, radius2

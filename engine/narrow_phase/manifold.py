@@ -1,21 +1,21 @@
-"""From where two shapes are to the contacts of their arbiter."""
+"""From where two shapes are to the contacts of their arbiter, for one arbiter or for eight."""
 
 from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-import numpy as np
-
 from engine.jit import kernel
-from engine.lanes import const
+from engine.lanes import const, select
 from engine.origin import origin_of
+from engine.rows import at, load_row, store_row
 from engine.vec2 import Vec2
+
+FIRST_TURN = 8  # cosine1 among the numbers of an arbiter's row
 
 
 class Places(NamedTuple):
     """Where two shapes and the centres of mass of their bodies are."""
 
-    origin: Vec2  # what all else is reckoned from, float64 [m]
     shape1: Any  # Vec2 of lanes [m]
     shape2: Any
     mass1: Any
@@ -29,16 +29,14 @@ def seen_from(origin, x, y, lane):
 
 
 @kernel
-def places_of(arbiter, placements, bodies):
+def places_of(arbiter, placements, bodies, lane):
     """Where the two shapes of an arbiter are, in the solver's precision."""
-    place1 = placements[arbiter.shape1]
-    place2 = placements[arbiter.shape2]
-    body1 = bodies[arbiter.body1]
-    body2 = bodies[arbiter.body2]
-    lane = place1.cosine
+    place1 = at(placements, arbiter.shape1)
+    place2 = at(placements, arbiter.shape2)
+    body1 = at(bodies, arbiter.body1)
+    body2 = at(bodies, arbiter.body2)
     origin = origin_of(body1, lane)
     return Places(
-        origin,
         seen_from(origin, place1.x, place1.y, lane),
         seen_from(origin, place2.x, place2.y, lane),
         seen_from(origin, body1.center_x, body1.center_y, lane),
@@ -47,71 +45,49 @@ def places_of(arbiter, placements, bodies):
 
 
 @kernel
-def write_point(contact, places, point, separation, feature):
-    """Writes where a contact is; its impulses begin at zero."""
-    contact.x = places.origin.x + point.x
-    contact.y = places.origin.y + point.y
-    contact.feature = feature
-    r1 = point - places.mass1
-    r2 = point - places.mass2
-    contact.r1_x = r1.x
-    contact.r1_y = r1.y
-    contact.r2_x = r2.x
-    contact.r2_y = r2.y
-    contact.separation = separation
-    contact.found = separation
-    contact.found1_x = r1.x
-    contact.found1_y = r1.y
-    contact.found2_x = r2.x
-    contact.found2_y = r2.y
-    contact.normal_impulse = 0
-    contact.tangent_impulse = 0
+def matched(there, feature, old_there1, feature1, impulse1, old_there2, feature2, impulse2):
+    """The impulse of the contact that had this feature in the step before, 0 if there was none."""
+    zero = const(0.0, impulse1)
+    impulse = select(old_there1 & (feature == feature1), impulse1, zero)
+    return select(there & old_there2 & (feature == feature2), impulse2, select(there, impulse, zero))
 
 
 @kernel
 def write_manifold(index, arbiters, contacts, places, manifold, motions, warm_starting):
     """Writes what a collider found; a contact whose feature was there in the step before keeps its impulses."""
-    arbiter = arbiters[index]
+    arbiter = at(arbiters, index)
     old_count = arbiter.count
-    old1 = contacts[index, 0]
-    old2 = contacts[index, 1]
-    feature1, normal1, tangent1 = old1.feature, old1.normal_impulse, old1.tangent_impulse
-    feature2, normal2, tangent2 = old2.feature, old2.normal_impulse, old2.tangent_impulse
+    old1, old2 = at(contacts, index, 0), at(contacts, index, 1)
+    feature1, feature2 = old1.feature, old2.feature
+    _, _, _, _, _, _, normal1, tangent1 = load_row(contacts, index, 0)
+    _, _, _, _, _, _, normal2, tangent2 = load_row(contacts, index, 1)
+    old_there1, old_there2 = (old_count > 0) & warm_starting, (old_count > 1) & warm_starting
+    count = const(manifold.count, old_count)
+    new1, new2 = const(manifold.feature1, feature1), const(manifold.feature2, feature2)
+    there1, there2 = count > 0, count > 1
+    old1.feature = new1
+    old2.feature = new2
 
-    count = manifold.count
-    arbiter.count = count
-    if count > 0:
-        arbiter.nx = manifold.normal.x
-        arbiter.ny = manifold.normal.y
-        write_point(contacts[index, 0], places, manifold.point1, manifold.separation1, manifold.feature1)
-        if count > 1:
-            write_point(contacts[index, 1], places, manifold.point2, manifold.separation2, manifold.feature2)
-    if count == 0 or old_count == 0 or not warm_starting:
-        arbiter.rolling_impulse = 0
-    if warm_starting:
-        for i in range(count):
-            contact = contacts[index, i]
-            if old_count > 0 and contact.feature == feature1:
-                contact.normal_impulse = normal1
-                contact.tangent_impulse = tangent1
-            if old_count > 1 and contact.feature == feature2:
-                contact.normal_impulse = normal2
-                contact.tangent_impulse = tangent2
-    remember(arbiter, places, motions)
+    r1, r2 = manifold.point1 - places.mass1, manifold.point1 - places.mass2
+    normal = matched(there1, new1, old_there1, feature1, normal1, old_there2, feature2, normal2)
+    tangent = matched(there1, new1, old_there1, feature1, tangent1, old_there2, feature2, tangent2)
+    s = manifold.separation1
+    store_row(contacts, index, (r1.x, r1.y, r2.x, r2.y, s, s, normal, tangent), 0)
+    r1, r2 = manifold.point2 - places.mass1, manifold.point2 - places.mass2
+    normal = matched(there2, new2, old_there1, feature1, normal1, old_there2, feature2, normal2)
+    tangent = matched(there2, new2, old_there1, feature1, tangent1, old_there2, feature2, tangent2)
+    s = manifold.separation2
+    store_row(contacts, index, (r1.x, r1.y, r2.x, r2.y, s, s, normal, tangent), 1)
 
-
-@kernel
-def remember(arbiter, places, motions):
-    """Notes where the bodies are, for recycling."""
-    motion1 = motions[arbiter.body1]
-    motion2 = motions[arbiter.body2]
+    _, _, friction, rolling, _, _, _, _ = load_row(arbiters, index)
+    kept = there1 & old_there1
+    nx, ny = manifold.normal.x, manifold.normal.y
     apart = places.mass2 - places.mass1
-    arbiter.recyclable = np.int32(arbiter.count > 0)
-    arbiter.found_nx = arbiter.nx
-    arbiter.found_ny = arbiter.ny
-    arbiter.apart_x = apart.x
-    arbiter.apart_y = apart.y
-    arbiter.cosine1 = motion1.cosine
-    arbiter.sine1 = motion1.sine
-    arbiter.cosine2 = motion2.cosine
-    arbiter.sine2 = motion2.sine
+    rolling = select(kept, rolling, const(0.0, rolling))
+    store_row(arbiters, index, (nx, ny, friction, rolling, nx, ny, apart.x, apart.y))
+    arbiter.count = count
+    arbiter.recyclable = const(1, count)
+    arbiter.clearance = manifold.clearance
+    _, _, _, _, _, cosine1, sine1, _ = load_row(motions, arbiter.body1)
+    _, _, _, _, _, cosine2, sine2, _ = load_row(motions, arbiter.body2)
+    store_row(arbiters, index, (cosine1, sine1, cosine2, sine2), 0, FIRST_TURN)

@@ -1,7 +1,7 @@
 """What a collider of two shapes finds: a normal and at most two points.
 
-A collider works in lanes and answers with a `Touch`, whose numbers are all lanes, so that it may be compiled eight
-wide; `pack` then counts the points that are near enough and gives features their integer.
+All their numbers are lanes, features and counts too, so that a collider may be compiled eight wide: it answers with a
+`Touch`, of which `pack` takes the points that are near enough.
 
 A *feature* recognises a point in the next step: the corner of shape 1 in the low byte, that of shape 2 above it, which
 lie nearest to each other at this end of the contact. Sliding changes which of the two corners really bounds the
@@ -13,11 +13,9 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-import numpy as np
-
 from engine.jit import kernel
-from engine.lanes import const, select
-from engine.vec2 import Vec2
+from engine.lanes import const, select, whole
+from engine.vec2 import Vec2, choose
 
 FAR = 1e30
 """Separation of a point that there is not [m]."""
@@ -43,18 +41,19 @@ CORNER2 = 256.0  # what a corner of shape 2 counts in a feature
 class Manifold(NamedTuple):
     """Up to two points where two shapes touch, or nearly. Of the points from `count` on nothing is said."""
 
-    count: Any  # 0, 1 or 2
+    count: Any  # 0, 1 or 2, as a lane
     normal: Vec2  # unit, from shape 1 to shape 2
     point1: Vec2  # midway between the two surfaces, in the frame of the centres given [m]
     separation1: Any  # < 0: overlap [m]
-    feature1: Any  # int32
+    feature1: Any  # a whole number
     point2: Vec2
     separation2: Any
     feature2: Any
+    clearance: Any  # the shapes are this far apart at least, where no point is near enough; 0: nothing is known [m]
 
 
 class Touch(NamedTuple):
-    """The same in lanes: a point that there is not has separation FAR, a feature is a whole number."""
+    """The same before it is known what is near enough: a point that there is not has separation FAR."""
 
     normal: Vec2
     point1: Vec2
@@ -63,12 +62,7 @@ class Touch(NamedTuple):
     point2: Vec2
     separation2: Any
     feature2: Any
-
-
-@kernel
-def choose(condition, a, b):
-    """The vector a where the condition holds, else b."""
-    return Vec2(select(condition, a.x, b.x), select(condition, a.y, b.y))
+    clearance: Any
 
 
 @kernel
@@ -81,42 +75,38 @@ def feature_of(corner1, corner2):
 def one_point(normal, point, separation):
     """A touch in one point, of shapes of which one at least is round."""
     zero = const(0.0, separation)
-    return Touch(normal, point, separation, zero, point, const(FAR, separation), zero)
+    return Touch(normal, point, separation, zero, point, const(FAR, separation), zero, separation)
 
 
 @kernel
 def pack(touch, margin):
-    """The manifold of one lane: the points with separation <= margin [m], the first of them first."""
+    """The manifold: the points with separation <= margin [m], the first of them first."""
     near1 = touch.separation1 <= margin
     near2 = touch.separation2 <= margin
-    count = 0
-    if near1:
-        count += 1
-    if near2:
-        count += 1
-    feature1 = np.int32(touch.feature1)
-    feature2 = np.int32(touch.feature2)
-    second = near2 and not near1
+    zero = const(0.0, touch.separation1)
+    one = const(1.0, zero)
+    second = (touch.separation1 > margin) & near2
     return Manifold(
-        count,
+        select(near1, one, zero) + select(near2, one, zero),
         touch.normal,
         choose(second, touch.point2, touch.point1),
         select(second, touch.separation2, touch.separation1),
-        np.int32(select(second, feature2, feature1)),
+        select(second, touch.feature2, touch.feature1),
         touch.point2,
         touch.separation2,
-        feature2,
+        touch.feature2,
+        touch.clearance,
     )
 
 
 @kernel
-def nothing(lane):
-    """The manifold of shapes that are too far apart to matter."""
+def nothing(clearance):
+    """The manifold of shapes that are too far apart to matter: by so much at least, 0 if that is not known [m]."""
+    lane = clearance
     zero = const(0.0, lane)
     nowhere = Vec2(zero, zero)
     far = const(FAR, lane)
-    up = Vec2(zero, const(1.0, lane))
-    return Manifold(0, up, nowhere, far, np.int32(0), nowhere, far, np.int32(0))
+    return Manifold(zero, Vec2(zero, const(1.0, lane)), nowhere, far, zero, nowhere, far, zero, clearance)
 
 
 @kernel
@@ -124,18 +114,24 @@ def mirrored(manifold):
     """The manifold of the same shapes in the other order."""
     m = manifold
     return Manifold(
-        m.count,
-        -m.normal,
-        m.point1,
-        m.separation1,
-        swapped(m.feature1),
-        m.point2,
-        m.separation2,
-        swapped(m.feature2),
-    )
+        m.count, -m.normal, m.point1, m.separation1, swapped(m.feature1), m.point2, m.separation2, swapped(m.feature2),
+        m.clearance,
+    )  # fmt: skip
+
+
+@kernel
+def mirrored_where(flip, manifold):
+    """The manifold, of the same shapes in the other order where `flip` holds."""
+    m, n = manifold, mirrored(manifold)
+    return Manifold(
+        m.count, choose(flip, n.normal, m.normal), m.point1, m.separation1, select(flip, n.feature1, m.feature1),
+        m.point2, m.separation2, select(flip, n.feature2, m.feature2), m.clearance,
+    )  # fmt: skip
 
 
 @kernel
 def swapped(feature):
     """A feature with the corners of the two shapes exchanged."""
-    return np.int32((feature & 0xFF) << 8 | feature >> 8)
+    other = const(CORNER2, feature)
+    high = whole(feature / other)
+    return high + other * (feature - other * high)

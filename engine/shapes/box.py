@@ -5,10 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from engine.constants import BOUNDS_MARGIN_RELATIVE
 from engine.jit import kernel
 from engine.lanes import absolute
+from engine.rows import at
 from engine.shapes.piece import Lamina, Piece, rectangle
+from engine.shapes.placing import put_shape, write_bounds
 from engine.validate import positive
 
 BOX = 0
@@ -72,19 +73,17 @@ class Box:
 
 
 @kernel
-def box_bounds(ranks, order, shapes, hulls, placements, margin, bounds):
-    """Writes the bounding boxes of boxes: bounds (4, S) float32, lower x and y, upper x and y, at their `ranks`."""
-    for rank in ranks:
-        row = order[rank]
-        shape = shapes[row]
-        place = placements[row]
+def box_bounds(group, shapes, hulls, bodies, motions, placements, margin, bounds):
+    """Puts boxes, eight at a time, where their bodies are now, and writes their bounding boxes, grown by `margin` [m].
+
+    group: see engine/shapes/placing.py. bounds (4, S) float32: lower x and y, upper x and y, by rank.
+    """
+    sides = (bounds[0], bounds[1], bounds[2], bounds[3])
+    for k in range(len(group)):
+        shape = at(group, k)
+        place = put_shape(shape, shape.row, bodies, motions, placements)
         c = absolute(place.cosine)
         s = absolute(place.sine)
         reach_x = c * shape.half_x + s * shape.half_y
         reach_y = s * shape.half_x + c * shape.half_y
-        reach_x += margin + BOUNDS_MARGIN_RELATIVE * (absolute(place.x) + reach_x)
-        reach_y += margin + BOUNDS_MARGIN_RELATIVE * (absolute(place.y) + reach_y)
-        bounds[0, rank] = place.x - reach_x
-        bounds[1, rank] = place.y - reach_y
-        bounds[2, rank] = place.x + reach_x
-        bounds[3, rank] = place.y + reach_y
+        write_bounds(shape.rank, place, reach_x, reach_y, margin, sides)

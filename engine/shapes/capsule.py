@@ -6,10 +6,11 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
-from engine.constants import BOUNDS_MARGIN_RELATIVE
 from engine.jit import kernel
 from engine.lanes import absolute
+from engine.rows import at
 from engine.shapes.piece import Lamina, Piece, from_capsule, joined, rectangle, sector
+from engine.shapes.placing import put_shape, write_bounds
 from engine.validate import positive
 
 CAPSULE = 2
@@ -77,17 +78,12 @@ class Capsule:
 
 
 @kernel
-def core_bounds(ranks, order, shapes, hulls, placements, margin, bounds):
-    """Writes the bounding boxes of capsules, segments and chain pieces, as box_bounds does."""
-    for rank in ranks:
-        row = order[rank]
-        shape = shapes[row]
-        place = placements[row]
+def core_bounds(group, shapes, hulls, bodies, motions, placements, margin, bounds):
+    """Puts capsules, segments and chain pieces where they are and writes their bounding boxes, as box_bounds does."""
+    sides = (bounds[0], bounds[1], bounds[2], bounds[3])
+    for k in range(len(group)):
+        shape = at(group, k)
+        place = put_shape(shape, shape.row, bodies, motions, placements)
         reach_x = absolute(place.cosine) * shape.half_x + shape.radius
         reach_y = absolute(place.sine) * shape.half_x + shape.radius
-        reach_x += margin + BOUNDS_MARGIN_RELATIVE * (absolute(place.x) + reach_x)
-        reach_y += margin + BOUNDS_MARGIN_RELATIVE * (absolute(place.y) + reach_y)
-        bounds[0, rank] = place.x - reach_x
-        bounds[1, rank] = place.y - reach_y
-        bounds[2, rank] = place.x + reach_x
-        bounds[3, rank] = place.y + reach_y
+        write_bounds(shape.rank, place, reach_x, reach_y, margin, sides)

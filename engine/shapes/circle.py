@@ -6,10 +6,10 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
-from engine.constants import BOUNDS_MARGIN_RELATIVE
 from engine.jit import kernel
-from engine.lanes import absolute
+from engine.rows import at
 from engine.shapes.piece import Lamina, Piece, disc
+from engine.shapes.placing import put_shape, write_bounds
 from engine.validate import positive
 
 CIRCLE = 1
@@ -71,15 +71,10 @@ class Circle:
 
 
 @kernel
-def circle_bounds(ranks, order, shapes, hulls, placements, margin, bounds):
-    """Writes the bounding boxes of circles, as box_bounds does."""
-    for rank in ranks:
-        row = order[rank]
-        place = placements[row]
-        radius = shapes[row].radius
-        reach_x = radius + margin + BOUNDS_MARGIN_RELATIVE * (absolute(place.x) + radius)
-        reach_y = radius + margin + BOUNDS_MARGIN_RELATIVE * (absolute(place.y) + radius)
-        bounds[0, rank] = place.x - reach_x
-        bounds[1, rank] = place.y - reach_y
-        bounds[2, rank] = place.x + reach_x
-        bounds[3, rank] = place.y + reach_y
+def circle_bounds(group, shapes, hulls, bodies, motions, placements, margin, bounds):
+    """Puts circles where they are and writes their bounding boxes, as box_bounds does."""
+    sides = (bounds[0], bounds[1], bounds[2], bounds[3])
+    for k in range(len(group)):
+        shape = at(group, k)
+        place = put_shape(shape, shape.row, bodies, motions, placements)
+        write_bounds(shape.rank, place, shape.radius, shape.radius, margin, sides)

@@ -13,7 +13,10 @@ from engine import validate
 from engine.constants import BOUNDS_MARGIN_RELATIVE
 from engine.jit import kernel
 from engine.lanes import absolute, maximum, minimum
+from engine.rows import at
 from engine.shapes.piece import Lamina, Piece, Point, inside_edges, joined, rectangle, sector, triangle
+from engine.shapes.placing import put_shape
+from engine.simd import WIDTH
 from engine.tables import HULL_POINTS
 
 POLYGON = 3
@@ -130,17 +133,18 @@ def check_convex(points: tuple[Point, ...]) -> tuple[Point, ...]:
 
 
 @kernel
-def polygon_bounds(ranks, order, shapes, hulls, placements, margin, bounds):
-    """Writes the bounding boxes of polygons, as box_bounds does."""
-    for rank in ranks:
-        row = order[rank]
+def polygon_bounds(group, shapes, hulls, bodies, motions, placements, margin, bounds):
+    """Puts polygons where they are and writes their bounding boxes, as box_bounds does, but one by one."""
+    for k in range(len(group) * WIDTH):
+        shape = at(group, k // WIDTH)
+        rank, row = shape.rank[k % WIDTH], shape.row[k % WIDTH]
         hull = hulls[shapes[row].hull]
-        place = placements[row]
+        place = put_shape(shapes[row], row, bodies, motions, placements)
         low_x = high_x = place.cosine * hull.x[0] - place.sine * hull.y[0]
         low_y = high_y = place.sine * hull.x[0] + place.cosine * hull.y[0]
-        for k in range(1, hull.count):
-            x = place.cosine * hull.x[k] - place.sine * hull.y[k]
-            y = place.sine * hull.x[k] + place.cosine * hull.y[k]
+        for corner in range(1, hull.count):
+            x = place.cosine * hull.x[corner] - place.sine * hull.y[corner]
+            y = place.sine * hull.x[corner] + place.cosine * hull.y[corner]
             low_x, high_x = minimum(low_x, x), maximum(high_x, x)
             low_y, high_y = minimum(low_y, y), maximum(high_y, y)
         radius = shapes[row].radius

@@ -8,19 +8,40 @@ overlap is pushed out by a bias velocity (position correction). Source: E. Catto
 
 from __future__ import annotations
 
+from functools import cache
 from typing import TYPE_CHECKING
+
+import numpy as np
 
 from engine import integrate
 from engine.impulses import pull, push
 from engine.jit import kernel
-from engine.joints import revolute
+from engine.joints import revolute, revolute_motor
 from engine.lanes import clamp, const, maximum, minimum, over
 from engine.solvers.solver import Solver
+from engine.tables import REALS, empty
 from engine.vec2 import Vec2, cross, dot, right_of
 
 if TYPE_CHECKING:
     from engine.settings import Settings
     from engine.state import State
+
+
+@cache
+def point_dtype(precision: str) -> np.dtype:
+    """What a pass needs of a contact beside its impulses; made afresh each step."""
+    real = REALS[precision]
+    return np.dtype(
+        [
+            ("normal_mass", real),  # effective mass along the normal [kg]
+            ("tangent_mass", real),  # and along the tangent [kg]
+            ("normal_arm1", real),  # r1 x n: how an impulse along the normal turns body1 [m]
+            ("normal_arm2", real),
+            ("tangent_arm1", real),  # r1 x t [m]
+            ("tangent_arm2", real),
+            ("bias", real),  # velocity that removes overlap [m/s]
+        ]
+    )
 
 
 @kernel
@@ -38,7 +59,7 @@ def effective_mass(motion1, motion2, r1, r2, direction):
 
 
 @kernel
-def prepare_contacts(arbiters, contacts, count, motions, step):
+def prepare_contacts(arbiters, contacts, count, motions, points, step):
     """Effective masses and biases of all contacts; and the impulses to start from."""
     for index in range(count):
         arbiter = arbiters[index]
@@ -48,16 +69,17 @@ def prepare_contacts(arbiters, contacts, count, motions, step):
         tangent = right_of(normal)
         for i in range(arbiter.count):
             contact = contacts[index, i]
+            point = points[index, i]
             r1 = Vec2(contact.r1_x, contact.r1_y)
             r2 = Vec2(contact.r2_x, contact.r2_y)
-            contact.normal_mass = effective_mass(motion1, motion2, r1, r2, normal)
-            contact.tangent_mass = effective_mass(motion1, motion2, r1, r2, tangent)
+            point.normal_mass = effective_mass(motion1, motion2, r1, r2, normal)
+            point.tangent_mass = effective_mass(motion1, motion2, r1, r2, tangent)
             overlap = minimum(const(0.0, step.slop), contact.separation + step.slop)
-            contact.bias = -step.bias_factor * step.inverse_dt * overlap
-            contact.normal_arm1 = cross(r1, normal)
-            contact.normal_arm2 = cross(r2, normal)
-            contact.tangent_arm1 = cross(r1, tangent)
-            contact.tangent_arm2 = cross(r2, tangent)
+            point.bias = -step.bias_factor * step.inverse_dt * overlap
+            point.normal_arm1 = cross(r1, normal)
+            point.normal_arm2 = cross(r2, normal)
+            point.tangent_arm1 = cross(r1, tangent)
+            point.tangent_arm2 = cross(r2, tangent)
             if step.accumulate_impulses != 0:
                 impulse = normal * contact.normal_impulse + tangent * contact.tangent_impulse
                 pull(motion1, r1, impulse)
@@ -65,7 +87,7 @@ def prepare_contacts(arbiters, contacts, count, motions, step):
 
 
 @kernel
-def solve_contacts(arbiters, contacts, count, motions, accumulate):
+def solve_contacts(arbiters, contacts, points, count, motions, accumulate):
     """One pass over all contacts: first the normal impulse, then friction bounded by it.
 
     Each contact waits for the one before it, so what counts is the longest chain of dependent operations. The talk's
@@ -86,11 +108,12 @@ def solve_contacts(arbiters, contacts, count, motions, accumulate):
         tangent1, tangent2 = tangent * motion1.inverse_mass, tangent * motion2.inverse_mass
         for i in range(arbiter.count):
             contact = contacts[index, i]
-            arm1, arm2 = contact.normal_arm1, contact.normal_arm2
+            point = points[index, i]
+            arm1, arm2 = point.normal_arm1, point.normal_arm2
 
             # normal impulse, P_n = max(-m_n v_n, 0), on the sum of all passes
             speed = dot(v2 - v1, normal) + (w2 * arm2 - w1 * arm1)
-            change = contact.normal_mass * (contact.bias - speed)
+            change = point.normal_mass * (point.bias - speed)
             zero = const(0.0, change)
             if accumulate:
                 before = contact.normal_impulse
@@ -106,9 +129,9 @@ def solve_contacts(arbiters, contacts, count, motions, accumulate):
 
             # friction, |P_t| <= mu P_n
             limit = friction * total
-            arm1, arm2 = contact.tangent_arm1, contact.tangent_arm2
+            arm1, arm2 = point.tangent_arm1, point.tangent_arm2
             speed = dot(v2 - v1, tangent) + (w2 * arm2 - w1 * arm1)
-            change = contact.tangent_mass * -speed
+            change = point.tangent_mass * -speed
             if accumulate:
                 before = contact.tangent_impulse
                 total = clamp(before + change, -limit, limit)
@@ -125,16 +148,16 @@ def solve_contacts(arbiters, contacts, count, motions, accumulate):
 
 
 @kernel
-def solve_all(bodies, motions, arbiters, contacts, count, joints, joint_order, steps):
+def solve_all(bodies, motions, arbiters, contacts, count, joints, joint_order, motors, points, steps):
     """Prepares all constraints, then passes over contacts and joints `iterations` times."""
     step = steps[0]
-    prepare_contacts(arbiters, contacts, count, motions, step)
+    prepare_contacts(arbiters, contacts, count, motions, points, step)
     if joints is not None:
-        revolute.prepare(joints, joint_order, bodies, motions, step)
+        revolute.prepare(joints, joint_order, bodies, motions, motors, step)
     for _ in range(step.iterations):
-        solve_contacts(arbiters, contacts, count, motions, step.accumulate_impulses != 0)
+        solve_contacts(arbiters, contacts, points, count, motions, step.accumulate_impulses != 0)
         if joints is not None:
-            revolute.solve(joints, joint_order, motions)
+            revolute.solve(joints, joint_order, motions, motors)
     for index in range(count):
         for i in range(arbiters[index].count):
             contacts[index, i].given_normal = contacts[index, i].normal_impulse
@@ -144,6 +167,8 @@ def solve_all(bodies, motions, arbiters, contacts, count, joints, joint_order, s
             joint = joints[joint_order[rank]]
             joint.given_x = joint.impulse_x
             joint.given_y = joint.impulse_y
+            if motors is not None:
+                motors[rank].given = motors[rank].impulse
 
 
 def apply_forces(state: State, settings: Settings) -> int:
@@ -162,9 +187,15 @@ def solve(state: State, settings: Settings) -> None:
     """Stage 3 of the talk."""
     bodies, motions = state.bodies.tables["bodies"], state.bodies.tables["motions"]
     table = state.arbiters
+    motors = revolute_motor.begin(state)
+    points = state.scratch.get("points")
+    if points is None or len(points) < table.count:
+        points = state.scratch["points"] = empty((2 * table.count, 2), point_dtype(state.precision))
     solve_all(
-        bodies, motions, table.rows, table.contacts, table.count, state.active_joints, state.joints.order, state.steps
-    )
+        bodies, motions, table.rows, table.contacts, table.count, state.active_joints, state.joints.order, motors,
+        points, state.steps,
+    )  # fmt: skip
+    revolute_motor.end(state, motors)
 
 
 def update_positions(state: State, settings: Settings) -> int:

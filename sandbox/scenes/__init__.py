@@ -8,8 +8,20 @@ from sandbox.scenes import the_talk
 from sandbox.scenes import stacking
 from sandbox.scenes import shapes
 from sandbox.scenes import effects
+from sandbox.scenes import benchmark
 
 # isort: on
 from sandbox.scenes.registry import SCENES, Scene, UnknownScene, find_scene, scene
 
-__all__ = ["SCENES", "Scene", "UnknownScene", "effects", "find_scene", "scene", "shapes", "stacking", "the_talk"]
+__all__ = [
+    "SCENES",
+    "Scene",
+    "UnknownScene",
+    "benchmark",
+    "effects",
+    "find_scene",
+    "scene",
+    "shapes",
+    "stacking",
+    "the_talk",
+]

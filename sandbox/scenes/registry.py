@@ -66,7 +66,9 @@ def scene(
 
 
 def find_scene(name: str) -> Scene:
-    """The scene of that name, by its full name or, whatever the case, by the part after the folder."""
+    """The scene of that name, by its full name or, whatever the case, by the part after the folder: of several, the
+    first that is listed.
+    """
     if not isinstance(name, str):
         raise UnknownScene(str(validate.refuse("scene", name, "the name of a scene")))
     if name in SCENES:
@@ -74,7 +76,7 @@ def find_scene(name: str) -> Scene:
     name = name[:80]
     wanted = name.casefold()
     matches = [s for s in SCENES.values() if wanted in (s.name.casefold(), s.name.casefold().split("/")[-1])]
-    if len(matches) == 1:
+    if matches:
         return matches[0]
     close = difflib.get_close_matches(name, SCENES, n=3, cutoff=0.4)
     hint = f"; did you mean {' or '.join(repr(c) for c in close)}? " if close else ""

@@ -9,9 +9,11 @@ from hypothesis import strategies as st
 
 from engine import SOLVERS, Box, Capsule, Circle, World
 from engine.arbiters import follow_pairs, indices_by_collider
+from engine.mixing import RULES
 from engine.narrow_phase import COLLIDER_OF, COLLIDERS
 from engine.narrow_phase.manifold import Places, write_manifold
 from engine.narrow_phase.manifold_points import Manifold
+from engine.simd import WIDTH
 from engine.tables import SHAPE, arbiter_dtype, contact_dtype, empty, motion_dtype
 from engine.vec2 import Vec2
 from tests.engine.worlds import DT, busy, floor, gathering, run
@@ -38,25 +40,37 @@ def a_table(keys: list[tuple[int, int]], mark: float) -> tuple[np.ndarray, np.nd
 @settings(max_examples=200, deadline=None)
 @given(before=pair_sets, after=pair_sets)
 def test_arbiters_live_as_long_as_their_pairs(before: set, after: set) -> None:
-    old_keys, keys = sorted(before), sorted(after)
-    old, old_points = a_table(old_keys, 1000.0)
-    new, points = a_table(keys, 5.0)
     shapes = empty(10, SHAPE)
     shapes["serial"][list(ROW_OF)] = np.arange(10)
-    shapes["body"] = 20 + np.arange(10)
+    shapes["body"] = owners = 20 + np.arange(10) % 7
     shapes["kind"] = np.arange(10) % 3
-    pairs = np.array([(ROW_OF[a], ROW_OF[b]) for a, b in keys], np.int64).reshape(-1, 2)
-    follow_pairs(pairs, len(keys), shapes, COLLIDER_OF, old, old_points, len(old_keys), new, points)
+    shapes["friction"] = np.arange(10)
+    possible = [key for key in sorted(before | after) if owners[ROW_OF[key[0]]] != owners[ROW_OF[key[1]]]]
+    old_keys, keys = ([key for key in possible if key in some] for some in (before, after))
+    old, old_points = a_table(old_keys, 1000.0)
+    old["count"] = touching = np.arange(len(old)) % 3
+    new, points = a_table(keys, 5.0)
+    pairs = np.array([(ROW_OF[a], ROW_OF[b]) for a, b in sorted(after)], np.int64).reshape(-1, 2)
+    kinds = np.full(len(new), -1, np.int32)
+    serials = np.ascontiguousarray(shapes["serial"])
+    rule = RULES.index("product")
+    total = follow_pairs(
+        pairs, len(pairs), serials, shapes, COLLIDER_OF, rule, old, old_points, len(old_keys), new, points, kinds
+    )  # fmt: skip
+    assert total == len(keys), "none for two shapes of one body"
+    assert (kinds[:total] == new["collider"][:total]).all()
     for index, key in enumerate(keys):
         if key in before:
             place = old_keys.index(key)
             assert new[index].tobytes() == old[place].tobytes(), "it keeps all that it has"
-            assert points[index].tobytes() == old_points[place].tobytes()
+            held = touching[place]
+            assert points[index, :held].tobytes() == old_points[place, :held].tobytes()
         else:
             row1, row2 = ROW_OF[key[0]], ROW_OF[key[1]]
             assert (new["serial1"][index], new["serial2"][index]) == key
             assert (new["shape1"][index], new["shape2"][index]) == (row1, row2)
-            assert (new["body1"][index], new["body2"][index]) == (20 + row1, 20 + row2)
+            assert (new["body1"][index], new["body2"][index]) == (owners[row1], owners[row2])
+            assert new["friction"][index] == row1 * row2
             assert new["collider"][index] == COLLIDER_OF[row1 % 3, row2 % 3]
             assert new["count"][index] == new["recyclable"][index] == new["rolling_impulse"][index] == 0
 
@@ -65,7 +79,7 @@ def manifold_of(found: list[int]) -> Manifold:
     """Contacts with these features."""
     first, second = (*found, 0, 0)[:2]
     up = Vec2(0.0, 1.0)
-    return Manifold(len(found), up, Vec2(0.5, 1.0), -0.1, first, Vec2(-0.5, 1.0), -0.2, second)
+    return Manifold(len(found), up, Vec2(0.5, 1.0), -0.1, first, Vec2(-0.5, 1.0), -0.2, second, 0.3)
 
 
 @settings(max_examples=200, deadline=None)
@@ -80,17 +94,17 @@ def test_impulses_are_carried_by_feature(before: list[int], after: list[int], wa
         points["feature"][1, i] = feature
         points["normal_impulse"][1, i], points["tangent_impulse"][1, i] = known[feature] = (100.0 + i, -200.0 - i)
     center = Vec2(0.0, 0.0)
-    places = Places(Vec2(10.0, 20.0), center, center, center, Vec2(0.0, 2.0))
+    places = Places(center, center, center, Vec2(0.0, 2.0))
     write_manifold(1, arbiters, points, places, manifold_of(after), empty(2, motion_dtype("double")), warm_starting)
     assert arbiters["count"][1] == len(after)
     goes_on = warm_starting and before and after
     assert arbiters["rolling_impulse"][1] == (7.0 if goes_on else 0.0)
-    assert arbiters["recyclable"][1] == bool(after)
+    assert arbiters["recyclable"][1] == 1
+    assert arbiters["clearance"][1] == 0.3
     for i, feature in enumerate(after):
         impulses = known.get(feature, (0.0, 0.0)) if warm_starting else (0.0, 0.0)
         assert (points["normal_impulse"][1, i], points["tangent_impulse"][1, i]) == impulses
         assert points["feature"][1, i] == feature
-        assert (points["x"][1, i], points["y"][1, i]) == (10.5 - i, 21.0)
         assert (points["r1_x"][1, i], points["r1_y"][1, i]) == (0.5 - i, 1.0)
         assert (points["r2_x"][1, i], points["r2_y"][1, i]) == (0.5 - i, -1.0)
         assert points["separation"][1, i] == (-0.1, -0.2)[i]
@@ -99,11 +113,16 @@ def test_impulses_are_carried_by_feature(before: list[int], after: list[int], wa
 
 def test_every_collider_gets_its_own() -> None:
     state = run(gathering(), 20)._state
-    kinds = state.arbiters.rows["collider"][: state.arbiters.count]
-    found = indices_by_collider(state.arbiters.rows, state.arbiters.count, len(COLLIDERS))
-    assert sorted(np.concatenate(found).tolist()) == list(range(state.arbiters.count))
-    assert all((kinds[own] == kind).all() and (np.diff(own) > 0).all() for kind, own in enumerate(found))
-    assert sum(len(own) > 0 for own in found) > 4
+    kinds = np.ascontiguousarray(state.arbiters.rows["collider"][: state.arbiters.count])
+    nothing = state.arbiters.nothing
+    found = indices_by_collider(kinds, nothing, len(COLLIDERS))
+    assert all(len(rows) % WIDTH == 0 for rows, _ in found)
+    assert all((rows[number:] == nothing).all() and len(rows) - number < WIDTH for rows, number in found)
+    own = [rows[:number] for rows, number in found]
+    assert sorted(np.concatenate(own).tolist()) == list(range(state.arbiters.count))
+    assert all((kinds[rows] == kind).all() and (np.diff(rows) > 0).all() for kind, rows in enumerate(own))
+    assert sum(len(rows) > 0 for rows in own) > 4
+    assert [rows.tolist() for rows, _ in found] == [rows.tolist() for rows, _ in state.indices]
 
 
 @pytest.mark.parametrize("solver", SOLVERS)

@@ -8,7 +8,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from engine.jit import kernel
-from engine.vec2 import Vec2, cross, dot, right_of, rotate, spin, unrotate
+from engine.rows import at
+from engine.simd import WIDTH
+from engine.vec2 import Vec2, choose, cross, dot, right_of, rotate, spin, unrotate
+from tests.engine.eights import REALS, as_block, as_rows, bits, floats
 
 pytestmark = pytest.mark.kernel
 
@@ -83,3 +86,70 @@ def test_single_stays_single() -> None:
     a, table = Vec2(np.float32(0.1), np.float32(0.2)), np.zeros(1, np.float32)
     in_single(a, np.float32(0.3), table)
     assert table[0] == np.float32(0.1) * np.float32(0.3) + (-np.float32(0.1) - np.float32(0.1))
+
+
+PAIRS = ("sum", "difference", "scaled", "from_scale", "negative", "chosen", "spun", "right", "turned", "back")
+NUMBERS = ("dot", "cross")
+
+
+@kernel
+def in_lanes(given, results, k, number):
+    """Everything that vectors can do, on one or on eight; `number` is one in either case."""
+    row, out = at(given, k), at(results, k)
+    a, b, s = Vec2(row.ax, row.ay), Vec2(row.bx, row.by), row.s
+    p = a + b
+    out.sum_x, out.sum_y = p.x, p.y
+    p = a - b
+    out.difference_x, out.difference_y = p.x, p.y
+    p = a * s
+    out.scaled_x, out.scaled_y = p.x, p.y
+    p = number * b
+    out.from_scale_x, out.from_scale_y = p.x, p.y
+    p = -a
+    out.negative_x, out.negative_y = p.x, p.y
+    p = choose(s > 0, a, b)
+    out.chosen_x, out.chosen_y = p.x, p.y
+    p = spin(s, a)
+    out.spun_x, out.spun_y = p.x, p.y
+    p = right_of(a)
+    out.right_x, out.right_y = p.x, p.y
+    p = rotate(a, b)
+    out.turned_x, out.turned_y = p.x, p.y
+    p = unrotate(a, b)
+    out.back_x, out.back_y = p.x, p.y
+    out.dot = dot(a, b)
+    out.cross = cross(a, b)
+
+
+@pytest.mark.parametrize("real", REALS)
+@settings(max_examples=40, deadline=None)
+@given(data=st.data())
+def test_eight_vectors_are_eight_times_one(real: type, data: st.DataObject) -> None:
+    columns = {name: data.draw(floats(real)) for name in ("ax", "ay", "bx", "by", "s")}
+    ax, ay, bx, by, s = columns.values()
+    number = real(data.draw(st.floats(-10, 10, width=32)))
+    with np.errstate(all="ignore"):
+        expected = dict(
+            zip(
+                PAIRS,
+                (
+                    (ax + bx, ay + by), (ax - bx, ay - by), (ax * s, ay * s), (number * bx, number * by), (-ax, -ay),
+                    (np.where(s > 0, ax, bx), np.where(s > 0, ay, by)), (-s * ay, s * ax), (ay, -ax),
+                    (ax * bx - ay * by, ay * bx + ax * by), (ax * bx + ay * by, ax * by - ay * bx),
+                ),
+                strict=True,
+            )
+        )  # fmt: skip
+        numbers = dict(zip(NUMBERS, (ax * bx + ay * by, ax * by - ay * bx), strict=True))
+    for name, (x, y) in expected.items():
+        numbers |= {f"{name}_x": x, f"{name}_y": y}
+    nothing = {name: np.zeros(WIDTH, real) for name in numbers}
+    at_once, one_by_one = as_block(nothing), as_rows(nothing)
+    block, rows = as_block(columns), as_rows(columns)
+    with np.errstate(all="ignore"):
+        in_lanes(block, at_once, 0, number)
+        for k in range(WIDTH):
+            in_lanes(rows, one_by_one, k, number)
+    for name, right in numbers.items():
+        assert bits(at_once[name][0]) == bits(right), f"{name} of eight"
+        assert bits(one_by_one[name]) == bits(right), f"{name} of one"

@@ -17,7 +17,7 @@ from tests.engine.trajectories import Reference, load, row
 from tests.sandbox.watching import PRECISIONS
 
 TALK = "sequential_impulses"
-FOLDERS = ("The Talk", "Stacking", "Shapes", "Effects")
+FOLDERS = ("The Talk", "Stacking", "Shapes", "Effects", "Benchmark")
 CRITERION = Criterion("it is at", lambda world: 0.0, "m", 1.0, at_most=1.0)
 DEMOS = {
     "The Talk/Single Box": "demo1_single_box",
@@ -31,17 +31,26 @@ DEMOS = {
     "The Talk/Multi-Pendulum": "demo9_multi_pendulum",
 }
 
+BENCHMARK = {  # bodies and joints: Box2D's, but for the washer's empty body and the six joints between static discs
+    "Benchmark/Large Pyramid": (5051, 0), "Benchmark/Many Pyramids": (22001, 0), "Benchmark/Joint Grid": (10000, 19794),
+    "Benchmark/Smash": (9601, 0), "Benchmark/Tumbler": (2027, 1), "Benchmark/Compounds": (3001, 0),
+    "Benchmark/Junkyard": (8002, 0), "Benchmark/Spinner": (6078, 1), "Benchmark/Washer": (8101, 0),
+    "Benchmark/Pile 1000": (1001, 0), "Benchmark/Pile 5000": (5001, 0), "Benchmark/Pile 20000": (20001, 0),
+    "Benchmark/Circles 5000": (5001, 0), "Benchmark/Mixed Pile": (3001, 0),
+}  # fmt: skip
+
 
 @pytest.mark.parametrize("precision", PRECISIONS)
 @pytest.mark.parametrize("name", SCENES)
 def test_runs_and_stays_finite(name: str, precision: str) -> None:
     simulation = Simulation(name, precision=precision)
     before = row(simulation.world)
-    for _ in range(120):
+    steps = 12 if name.startswith("Benchmark/") else 120  # thousands of bodies
+    for _ in range(steps):
         simulation.step()
     state = row(simulation.world)
     assert np.isfinite(state).all()
-    assert simulation.world.step_count == 120
+    assert simulation.world.step_count == steps
     assert np.abs(state - before).max() > 0.01, "nothing happens"
 
 
@@ -67,9 +76,15 @@ def test_is_described(name: str) -> None:
     assert entry.summary.endswith(".")
     assert entry.view[2] > 0.0
     assert entry.shows
+    world = entry.make()
+    assert (world.body_count, world.joint_count) == BENCHMARK.get(name, (world.body_count, world.joint_count))
     for criterion in entry.shows:
         assert criterion.after > 0.0
-        assert any(math.isfinite(limit) for limit in criterion.limits(entry.make(), TIME_STEP))
+        assert any(math.isfinite(limit) for limit in criterion.limits(world, TIME_STEP))
+
+
+def test_every_benchmark_is_there() -> None:
+    assert {name for name in SCENES if name.startswith("Benchmark/")} == set(BENCHMARK)
 
 
 def test_scenes_are_listed_by_folder() -> None:
@@ -83,6 +98,7 @@ def test_every_effect_of_the_issue_has_a_scene() -> None:
     assert set(names) >= {
         "Friction Ramp", "Restitution", "Rolling Resistance", "Conveyor", "Linear Damping", "Angular Damping",
         "Gravity Scale", "Drag", "Wind", "Buoyancy", "Magnets", "Point Gravity", "Explosion", "Filters",
+        "Motors",
     }  # fmt: skip
 
 
@@ -93,6 +109,7 @@ def test_every_effect_of_the_issue_has_a_scene() -> None:
         ("Conveyor", "conveyor"), ("Linear Damping", "linear damping"), ("Angular Damping", "angular damping"),
         ("Gravity Scale", "gravity scale"), ("Drag", "drag"), ("Wind", "wind"), ("Buoyancy", "buoyancy"),
         ("Magnets", "magnets"), ("Point Gravity", "point gravity"), ("Explosion", "explosions"), ("Filters", "filters"),
+        ("Motors", "revolute motors"),
     ],
 )  # fmt: skip
 def test_scene_of_an_effect_calls_for_it(name: str, effect: str) -> None:
@@ -118,7 +135,7 @@ def test_view_shows_what_moves(name: str) -> None:
         assert abs(body.position.x - center_x) <= height * 4 / 3 / 2, f"{body} is beside the view"
         assert body.position.y >= center_y - height / 2, f"{body} is below the view"
     above = [body for body in moving if body.position.y > center_y + height / 2]
-    for _ in range(120):
+    for _ in range(120 if above else 0):
         world.step(1 / 60)
     for body in above:
         assert abs(body.position.y - center_y) <= height / 2, f"{body} has not fallen into the view"
@@ -200,6 +217,11 @@ def test_goes_box2d_lites_way(name: str) -> None:
 @pytest.mark.parametrize("name", ["The Talk/Pyramid", "the talk/pyramid", "Pyramid", "pYRAMID"])
 def test_is_found_by_its_whole_name_or_the_part_after_the_folder(name: str) -> None:
     assert find_scene(name).name == "The Talk/Pyramid"
+
+
+def test_of_several_of_a_name_the_first_listed_is_found() -> None:
+    assert find_scene("compounds").name == "Shapes/Compounds"
+    assert find_scene("benchmark/compounds").name == "Benchmark/Compounds"
 
 
 @pytest.mark.parametrize(("name", "hint"), [("The Talk/Pyramids", "The Talk/Pyramid"), ("Domino", "The Talk/Dominos")])

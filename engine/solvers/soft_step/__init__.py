@@ -7,29 +7,46 @@ velocities, a pass without bias. Last of all, once a step, bouncing. Small steps
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from functools import cache
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from engine.atomics import new_counters
+from engine.joints.revolute_motor import motor_dtype
 from engine.mixing import RULES
-from engine.solvers.soft_step import contacts, friction, movers, restitution, rolling, tables
-from engine.solvers.soft_step.substeps import run_substeps
+from engine.program import COUNTERS, PARTS_A_THREAD, STAGE, clear_counters
+from engine.rows import wide
+from engine.simd import WIDTH
+from engine.solvers.soft_step import movers, tables
+from engine.solvers.soft_step.joints import joint_dtype
+from engine.solvers.soft_step.schedule import most_stages, write_program
+from engine.solvers.soft_step.work import run
 from engine.solvers.solver import Solver
 from engine.tables import empty
+from engine.threads import share, shares, usable
 
 if TYPE_CHECKING:
     from engine.settings import Settings
     from engine.state import State
 
+wide_dtype = cache(wide)
+MOTORS = ("motored", "motor_speed", "max_motor_torque", "motor_impulse", "motor_given")
 
-def table(state: State, name: str, dtype: np.dtype, count: int, effect: str = "") -> Any:
-    """A table to work on, with room for `count`; None where its effect is not active."""
+
+def table(state: State, name: str, dtype: np.dtype, count: int, effect: str = "", exactly: bool = False) -> Any:
+    """A table to work on, with room for `count`, or for exactly so many; None where its effect is not active."""
     if effect and effect not in state.effects:
         return None
     found = state.scratch.get(name)
-    if found is None or len(found) < count or found.dtype != dtype:
-        found = state.scratch[name] = empty(max(16, count + count // 2), dtype)
+    if found is None or len(found) < count or found.dtype != dtype or (exactly and len(found) != count):
+        found = state.scratch[name] = empty(count if exactly else max(16, count + count // 2), dtype)
     return found
+
+
+def rows(state: State, name: str, dtype: np.dtype, blocks: int, effect: str = "") -> Any:
+    """A table of constraints, as many side by side as the state solves at once."""
+    return table(state, name, wide_dtype(dtype, state.lanes), blocks, effect)
 
 
 def apply_forces(state: State, settings: Settings) -> int:
@@ -37,51 +54,90 @@ def apply_forces(state: State, settings: Settings) -> int:
     return -1
 
 
+class Plan(NamedTuple):
+    """What a solve needs, until content, settings or what touches change."""
+
+    asked: int  # threads that a step may use
+    threads: int  # that pay
+    stages: int  # of the program
+    arguments: tuple  # of `run` in one thread
+
+
+def plan_of(state: State, settings: Settings) -> Plan:
+    """The plan, made anew where it no longer holds. Colours must be up to date."""
+    plan = state.solve_plan
+    if plan is None or plan.asked != state.threads:
+        plan = state.solve_plan = make_plan(state, settings)
+    return plan
+
+
+def make_plan(state: State, settings: Settings) -> Plan:
+    """Looks up all tables, and writes the program."""
+    p = state.precision
+    pairs, layout, joint_layout, steps = state.arbiters, state.layout, state.joint_layout, state.steps
+    bodies, motions = state.bodies.tables["bodies"], state.bodies.tables["motions"]
+    threads = usable(state.threads, len(state.bodies.order))
+    blocks, joint_blocks = layout.blocks, joint_layout.blocks
+    bounces = rows(state, "bounces", tables.restitution_dtype(p), blocks, "restitution")
+    program = table(state, "program", STAGE, most_stages(settings.substeps, settings.iterations))
+    stages = write_program(
+        program, len(state.body_lanes) // WIDTH, len(state.dynamic_lanes) // WIDTH, len(state.moving_lanes) // WIDTH,
+        layout.firsts, joint_layout.firsts, bounces is not None, threads, steps,
+    )  # fmt: skip
+    counters = state.scratch.get("counters")
+    if counters is None or len(counters) < COUNTERS * len(program):
+        counters = state.scratch["counters"] = new_counters(COUNTERS * len(program))
+    arguments = (
+        True, 1, counters, program, stages, counters,
+        bodies, motions, table(state, "movers", tables.mover_dtype(p), len(bodies), exactly=True),
+        state.body_lanes, state.dynamic_lanes, state.moving_lanes,
+        table(state, "drives", wide_dtype(tables.drive_dtype(p), WIDTH), len(state.dynamic_lanes) // WIDTH),
+        pairs.rows, pairs.contacts, state.shapes.tables["shapes"], layout.slots,
+        rows(state, "constraints", tables.constraint_dtype(p), blocks),
+        rows(state, "frictions", tables.friction_dtype(p), blocks, "friction"),
+        rows(state, "belts", tables.belt_dtype(p), blocks, "conveyor"),
+        rows(state, "rollings", tables.rolling_dtype(p), blocks, "rolling resistance"),
+        bounces,
+        state.column("conveyor", state.shapes, "tangent_speed"),
+        state.column("rolling resistance", state.shapes, "rolling_resistance"),
+        state.column("restitution", state.shapes, "restitution"),
+        RULES.index(settings.restitution_mixing),
+        state.active_joints, state.joint_slots,
+        rows(state, "joints", joint_dtype(p), joint_blocks, "revolute joints"),
+        rows(state, "motors", motor_dtype(p), joint_blocks, "revolute motors"),
+        *(state.joints.ensure(name) if "revolute motors" in state.effects else None for name in MOTORS),
+        steps if "gravity" in state.effects else None, state.gravity_scales, state.linear_damping,
+        state.angular_damping, steps,
+    )  # fmt: skip
+    return Plan(state.threads, threads, stages, arguments)
+
+
 def solve(state: State, settings: Settings) -> None:
     """All substeps."""
-    p = state.precision
-    pairs, step = state.arbiters, state.steps
-    bodies, motions = state.bodies.tables["bodies"], state.bodies.tables["motions"]
-    shapes = state.shapes.tables["shapes"]
-    moved = table(state, "movers", tables.mover_dtype(p), len(bodies))
-    constraints = table(state, "constraints", tables.constraint_dtype(p), pairs.count)
-    movers.begin(state.bodies.order, motions, moved)
-    count = contacts.prepare(pairs.count, pairs.rows, pairs.contacts, motions, constraints, step)
-
-    frictions = table(state, "frictions", tables.friction_dtype(p), pairs.count, "friction")
-    belts = table(state, "belts", tables.belt_dtype(p), pairs.count, "conveyor")
-    rollings = table(state, "rollings", tables.rolling_dtype(p), pairs.count, "rolling resistance")
-    bounces = table(state, "bounces", tables.restitution_dtype(p), pairs.count, "restitution")
-    if frictions is not None:
-        friction.prepare(constraints, count, pairs.rows, pairs.contacts, frictions, step)
-    if belts is not None:
-        friction.prepare_belts(constraints, count, pairs.rows, belts, state.shapes.columns["tangent_speed"])
-    if rollings is not None:
-        coefficients = state.shapes.columns["rolling_resistance"]
-        rolling.prepare(constraints, count, pairs.rows, shapes, coefficients, rollings, step)
-    if bounces is not None:
-        coefficients, rule = state.shapes.columns["restitution"], RULES.index(settings.restitution_mixing)
-        restitution.prepare(constraints, count, pairs.rows, coefficients, rule, moved, bounces)
-
-    gravity = step if "gravity" in state.effects else None
-    run_substeps(
-        bodies, motions, moved, state.dynamic, state.moving, constraints, frictions, belts, rollings, count,
-        state.active_joints, state.joints.order, gravity, state.gravity_scales, state.linear_damping,
-        state.angular_damping, step,
-    )  # fmt: skip
-    if bounces is not None:
-        restitution.apply(constraints, bounces, count, moved, step)
-    contacts.store_impulses(constraints, count, pairs.contacts, pairs.rows, step)
-    if frictions is not None:
-        friction.store_impulses(constraints, frictions, count, pairs.contacts, pairs.rows, step)
-    if rollings is not None:
-        rolling.store_impulses(constraints, rollings, count, pairs.rows, step)
+    state.follow_colours()
+    plan = plan_of(state, settings)
+    if plan.threads == 1:
+        run(*plan.arguments)
+    else:
+        _, _, counters, *program = plan.arguments
+        clear_counters(counters, plan.stages)
+        share(plan.threads, run, plan.threads, new_counters(3), *program)
 
 
 def update_positions(state: State, settings: Settings) -> int:
     """Bodies go where the substeps took them."""
-    bodies, motions = state.bodies.tables["bodies"], state.bodies.tables["motions"]
-    return int(movers.finish(state.bodies.order, bodies, motions, state.scratch["movers"]))
+    bodies, motions, order = state.bodies.tables["bodies"], state.bodies.tables["motions"], state.bodies.order
+    moved = state.scratch["movers"]
+    threads = usable(state.threads, len(order))
+    if threads == 1:
+        lost = movers.finish(0, len(order), order, bodies, motions, moved)
+    else:
+        parts = PARTS_A_THREAD * threads
+        found = np.empty(parts, np.int64)
+        firsts = shares(len(order), parts)
+        share(threads, movers.finish_together, new_counters(2), firsts, found, order, bodies, motions, moved)
+        lost = -1 if found.max() < 0 else found[found >= 0].min()
+    return int(order[lost]) if lost >= 0 else -1
 
 
 SOFT_STEP = Solver(

@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+from typing import Any, NamedTuple
+
 from engine.jit import kernel
 from engine.lanes import const, maximum, over, select
-from engine.vec2 import Vec2, cross, dot, rotate, spin
+from engine.rows import at, load_row, numbers_at, store_row
+from engine.vec2 import Vec2, choose, cross, dot, rotate, spin
+
+FIRST_IMPULSE = 6  # normal_impulse among the numbers of a contact's row: then come tangent_impulse and what was given
 
 
 @kernel
@@ -17,65 +22,61 @@ def mass_along(inverse_mass, inverse_inertia1, inverse_inertia2, r1, r2, directi
 
 
 @kernel
-def prepare(total, arbiters, contacts, motions, constraints, steps):
-    """Writes a constraint for each arbiter that touches. Returns how many there are."""
-    step = steps[0]
-    count = 0
-    for k in range(total):
-        arbiter = arbiters[k]
-        if arbiter.count == 0:
-            continue
-        constraint = constraints[count]
-        count += 1
-        motion1 = motions[arbiter.body1]
-        motion2 = motions[arbiter.body2]
-        m1, i1 = motion1.inverse_mass, motion1.inverse_inertia
-        m2, i2 = motion2.inverse_mass, motion2.inverse_inertia
+def prepare(first, last, slots, arbiters, contacts, motions, constraints, step):
+    """Writes the constraints of the arbiters in `slots`; that of no arbiter has no mass, and gives nothing."""
+    for k in range(first, last):
+        index = numbers_at(slots, constraints, k)
+        c = at(constraints, k)
+        arbiter = at(arbiters, index)
+        body1, body2 = arbiter.body1, arbiter.body2
+        _, _, _, m1, i1, _, _, _ = load_row(motions, body1)
+        _, _, _, m2, i2, _, _, _ = load_row(motions, body2)
+        nx, ny, _, _, _, _, _, _ = load_row(arbiters, index)
+        normal = Vec2(nx, ny)
+        c.body1, c.body2 = body1, body2
+        c.nx, c.ny = nx, ny
+        c.inverse_mass1, c.inverse_inertia1 = m1, i1
+        c.inverse_mass2, c.inverse_inertia2 = m2, i2
         zero = const(0.0, m1)
-        constraint.body1 = arbiter.body1
-        constraint.body2 = arbiter.body2
-        constraint.arbiter = k
-        constraint.nx = arbiter.nx
-        constraint.ny = arbiter.ny
-        constraint.inverse_mass1 = m1
-        constraint.inverse_inertia1 = i1
-        constraint.inverse_mass2 = m2
-        constraint.inverse_inertia2 = i2
-        if m1 == zero or m2 == zero:
-            constraint.bias_rate = step.static_bias_rate
-            constraint.mass_scale = step.static_mass_scale
-            constraint.impulse_scale = step.static_impulse_scale
-        else:
-            constraint.bias_rate = step.contact_bias_rate
-            constraint.mass_scale = step.contact_mass_scale
-            constraint.impulse_scale = step.contact_impulse_scale
-        normal = Vec2(arbiter.nx, arbiter.ny)
-        first = contacts[k, 0]
-        r1 = Vec2(first.r1_x, first.r1_y)
-        r2 = Vec2(first.r2_x, first.r2_y)
-        constraint.a_r1_x, constraint.a_r1_y = r1.x, r1.y
-        constraint.a_r2_x, constraint.a_r2_y = r2.x, r2.y
-        constraint.a_separation = first.separation - dot(r2 - r1, normal)
-        constraint.a_mass = mass_along(m1 + m2, i1, i2, r1, r2, normal)
-        constraint.a_impulse = first.normal_impulse * step.carried
-        constraint.a_given = zero
-        constraint.b_given = zero
-        if arbiter.count > 1:
-            second = contacts[k, 1]
-            r1 = Vec2(second.r1_x, second.r1_y)
-            r2 = Vec2(second.r2_x, second.r2_y)
-            constraint.b_r1_x, constraint.b_r1_y = r1.x, r1.y
-            constraint.b_r2_x, constraint.b_r2_y = r2.x, r2.y
-            constraint.b_separation = second.separation - dot(r2 - r1, normal)
-            constraint.b_mass = mass_along(m1 + m2, i1, i2, r1, r2, normal)
-            constraint.b_impulse = second.normal_impulse * step.carried
-        else:
-            constraint.b_r1_x, constraint.b_r1_y = r1.x, r1.y
-            constraint.b_r2_x, constraint.b_r2_y = r2.x, r2.y
-            constraint.b_separation = constraint.a_separation
-            constraint.b_mass = zero
-            constraint.b_impulse = zero
-    return count
+
+        r1_x, r1_y, r2_x, r2_y, separation, _, impulse, _ = load_row(contacts, index, 0)
+        r1, r2 = Vec2(r1_x, r1_y), Vec2(r2_x, r2_y)
+        c.a_r1_x, c.a_r1_y = r1.x, r1.y
+        c.a_r2_x, c.a_r2_y = r2.x, r2.y
+        c.a_separation = separation - dot(r2 - r1, normal)
+        c.a_mass = mass_along(m1 + m2, i1, i2, r1, r2, normal)
+        c.a_impulse = impulse * step.carried
+        c.a_given = zero
+
+        there = arbiter.count > 1  # the second point; where it is not, the first stands for it, without mass
+        r1_x, r1_y, r2_x, r2_y, separation, _, impulse, _ = load_row(contacts, index, 1)
+        r1, r2 = choose(there, Vec2(r1_x, r1_y), r1), choose(there, Vec2(r2_x, r2_y), r2)
+        c.b_r1_x, c.b_r1_y = r1.x, r1.y
+        c.b_r2_x, c.b_r2_y = r2.x, r2.y
+        c.b_separation = separation - dot(r2 - r1, normal)
+        c.b_mass = select(there, mass_along(m1 + m2, i1, i2, r1, r2, normal), zero)
+        c.b_impulse = select(there, impulse * step.carried, zero)
+        c.b_given = zero
+
+
+class Softness(NamedTuple):
+    """How contacts give way; see softness.py."""
+
+    bias_rate: Any
+    mass_scale: Any
+    impulse_scale: Any
+
+
+@kernel
+def softness_of(inverse_mass1, inverse_mass2, step):
+    """Contacts with what no impulse moves are stiffer than others."""
+    zero = const(0.0, inverse_mass1)
+    held = (inverse_mass1 == zero) | (inverse_mass2 == zero)
+    return Softness(
+        select(held, step.static_bias_rate, step.contact_bias_rate),
+        select(held, step.static_mass_scale, step.contact_mass_scale),
+        select(held, step.static_impulse_scale, step.contact_impulse_scale),
+    )
 
 
 @kernel
@@ -91,13 +92,13 @@ def separation_now(d1, q1, d2, q2, r1, r2, normal, separation):
 
 
 @kernel
-def biased_change(speed, s, mass, impulse, bias_rate, mass_scale, impulse_scale, push_out, inverse_h):
+def biased_change(speed, s, mass, impulse, soft, push_out, inverse_h):
     """The impulse to add: of the spring where shapes overlap; where they are apart, what lets them just meet [N s]."""
     zero = const(0.0, s)
     apart = s > zero
-    bias = select(apart, s * inverse_h, maximum(bias_rate * s, -push_out))
-    scale = select(apart, const(1.0, s), mass_scale)
-    give = select(apart, zero, impulse_scale)
+    bias = select(apart, s * inverse_h, maximum(soft.bias_rate * s, -push_out))
+    scale = select(apart, const(1.0, s), soft.mass_scale)
+    give = select(apart, zero, soft.impulse_scale)
     total = maximum(impulse - mass * scale * (speed + bias) - give * impulse, zero)
     return select(mass > zero, total - impulse, zero)
 
@@ -111,42 +112,18 @@ def relaxed_change(speed, s, mass, impulse, inverse_h):
 
 
 @kernel
-def warm_start(constraints, count, movers):
-    """Gives the bodies the normal impulses of the substep before."""
-    for k in range(count):
-        c = constraints[k]
-        mover1 = movers[c.body1]
-        mover2 = movers[c.body2]
-        normal = Vec2(c.nx, c.ny)
-        push_a = normal * c.a_impulse
-        push_b = normal * c.b_impulse
-        push = push_a + push_b
-        turn1 = cross(Vec2(c.a_r1_x, c.a_r1_y), push_a) + cross(Vec2(c.b_r1_x, c.b_r1_y), push_b)
-        turn2 = cross(Vec2(c.a_r2_x, c.a_r2_y), push_a) + cross(Vec2(c.b_r2_x, c.b_r2_y), push_b)
-        mover1.vx -= c.inverse_mass1 * push.x
-        mover1.vy -= c.inverse_mass1 * push.y
-        mover1.w -= c.inverse_inertia1 * turn1
-        mover2.vx += c.inverse_mass2 * push.x
-        mover2.vy += c.inverse_mass2 * push.y
-        mover2.w += c.inverse_inertia2 * turn2
-
-
-@kernel
-def store_impulses(constraints, count, contacts, arbiters, steps):
-    """Keeps for the next step, and for whoever asks, what the contacts gave; friction adds its own."""
-    parts = steps[0].parts
-    zero = const(0.0, parts)
-    for k in range(count):
-        c = constraints[k]
-        index = c.arbiter
-        first = contacts[index, 0]
-        first.normal_impulse = c.a_impulse * parts
-        first.given_normal = c.a_given
-        first.tangent_impulse = zero
-        first.given_tangent = zero
-        if arbiters[index].count > 1:
-            second = contacts[index, 1]
-            second.normal_impulse = c.b_impulse * parts
-            second.given_normal = c.b_given
-            second.tangent_impulse = zero
-            second.given_tangent = zero
+def store_impulses(first, last, slots, constraints, frictions, rollings, arbiters, contacts, step):
+    """Keeps for the next step, and for whoever asks, what the contacts gave."""
+    for k in range(first, last):
+        index = numbers_at(slots, constraints, k)
+        c = at(constraints, k)
+        zero = const(0.0, c.nx)
+        a_tangent, a_given, b_tangent, b_given = zero, zero, zero, zero
+        if frictions is not None:
+            f = at(frictions, k)
+            a_tangent, a_given = f.a_impulse * step.parts, f.a_given
+            b_tangent, b_given = f.b_impulse * step.parts, f.b_given
+        store_row(contacts, index, (c.a_impulse * step.parts, a_tangent, c.a_given, a_given), 0, FIRST_IMPULSE)
+        store_row(contacts, index, (c.b_impulse * step.parts, b_tangent, c.b_given, b_given), 1, FIRST_IMPULSE)
+        if rollings is not None:
+            at(arbiters, index).rolling_impulse = at(rollings, k).impulse * step.parts

@@ -1,4 +1,8 @@
-"""How bodies move within a substep: velocities from forces, positions from velocities (symplectic Euler)."""
+"""How bodies move within a substep: velocities from forces, positions from velocities (symplectic Euler).
+
+Eight bodies at a time where there is something to compute. Lists of bodies are filled up to a multiple of eight with
+the tables' last row, which is nobody's.
+"""
 
 from __future__ import annotations
 
@@ -6,9 +10,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from engine.atomics import count_up
 from engine.integrate import place_origin, turn
 from engine.jit import kernel
-from engine.lanes import const
+from engine.lanes import const, eight_of
+from engine.rows import at, load_row, pick, store_row
+from engine.simd import WIDTH
+from engine.threads import DONE, take_part, wait_for_all
 from engine.vec2 import Vec2, rotate
 
 
@@ -17,77 +25,80 @@ class Mover(NamedTuple):
 
     v: Vec2  # [m/s]
     w: Any  # [rad/s]
+    turned: Any  # [rad]
     d: Vec2  # way since the step began [m]
     q: Vec2  # rotation since the step began
 
 
 @kernel
-def load(row):
-    """A mover from its row."""
-    return Mover(Vec2(row.vx, row.vy), row.w, Vec2(row.dx, row.dy), Vec2(row.cosine, row.sine))
+def load(movers, rows):
+    """Movers from their rows."""
+    vx, vy, w, turned, dx, dy, cosine, sine = load_row(movers, rows)
+    return Mover(Vec2(vx, vy), w, turned, Vec2(dx, dy), Vec2(cosine, sine))
 
 
 @kernel
-def store(row, v, w):
-    """What an impulse changes, back into the row."""
-    row.vx = v.x
-    row.vy = v.y
-    row.w = w
+def store(movers, rows, v, w, turned):
+    """What an impulse changes, back into the rows; `turned` comes along because it stands beside."""
+    store_row(movers, rows, (v.x, v.y, w, turned))
 
 
 @kernel
-def begin(order, motions, movers):
-    """All bodies as the step finds them."""
-    for rank in range(len(order)):
-        motion = motions[order[rank]]
-        row = movers[order[rank]]
-        lane = motion.vx
-        row.vx = motion.vx
-        row.vy = motion.vy
-        row.w = motion.w
-        row.turned = const(0.0, lane)
-        row.dx = const(0.0, lane)
-        row.dy = const(0.0, lane)
-        row.cosine = const(1.0, lane)
-        row.sine = const(0.0, lane)
+def begin(first, last, order, motions, movers):
+    """Bodies as the step finds them. Adding 0 makes 0 of -0: a body that nothing moves is written by several lanes."""
+    for k in range(first, last):
+        rows = eight_of(order, WIDTH * k)
+        vx, vy, w, _, _, _, _, _ = load_row(motions, rows)
+        zero = const(0.0, vx)
+        store_row(movers, rows, (vx + zero, vy + zero, w + zero, zero, zero, zero, const(1.0, vx), zero))
 
 
 @kernel
-def integrate_velocities(dynamic, bodies, motions, movers, gravity, scales, linear, angular, step):
-    """v += h (s g + F / m), then v /= 1 + h c; the same for the angular velocity.
+def drive(first, last, dynamic, bodies, motions, gravity, scales, drives, step):
+    """What forces will do to velocities in each substep: h (s g + F / m), and h torque / I.
 
-    gravity, scales, linear, angular: None where the effect is not called for.
+    gravity, scales: None where the effect is not called for.
     """
-    for k in range(len(dynamic)):
-        row = dynamic[k]
-        body = bodies[row]
-        motion = motions[row]
-        mover = movers[row]
-        lane = mover.vx
-        one = const(1.0, lane)
-        ax = motion.inverse_mass * const(body.force_x, lane)
-        ay = motion.inverse_mass * const(body.force_y, lane)
+    for k in range(first, last):
+        rows = eight_of(dynamic, WIDTH * k)
+        body = at(bodies, rows)
+        motion = at(motions, rows)
+        inverse_mass = motion.inverse_mass
+        ax = inverse_mass * const(body.force_x, inverse_mass)
+        ay = inverse_mass * const(body.force_y, inverse_mass)
         if gravity is not None:
-            pull_x = step.gravity_x
-            pull_y = step.gravity_y
             if scales is not None:
-                scale = const(scales[row], lane)
-                pull_x = scale * pull_x
-                pull_y = scale * pull_y
-            ax = ax + pull_x
-            ay = ay + pull_y
-        vx = mover.vx + step.h * ax
-        vy = mover.vy + step.h * ay
-        w = mover.w + step.h * (motion.inverse_inertia * const(body.torque, lane))
+                scale = const(pick(scales, rows), inverse_mass)
+                ax = ax + scale * step.gravity_x
+                ay = ay + scale * step.gravity_y
+            else:
+                ax = ax + step.gravity_x
+                ay = ay + step.gravity_y
+        row = at(drives, k)
+        row.vx = step.h * ax
+        row.vy = step.h * ay
+        row.w = step.h * (motion.inverse_inertia * const(body.torque, inverse_mass))
+
+
+@kernel
+def integrate_velocities(first, last, dynamic, drives, movers, linear, angular, step):
+    """v += what forces do, then v /= 1 + h c; the same for the angular velocity.
+
+    linear, angular: None where the effect is not called for.
+    """
+    for k in range(first, last):
+        rows = eight_of(dynamic, WIDTH * k)
+        mover = load(movers, rows)
+        row = at(drives, k)
+        v = mover.v + Vec2(row.vx, row.vy)
+        w = mover.w + row.w
+        one = const(1.0, w)
         if linear is not None:
-            slower = one / (one + step.h * const(linear[row], lane))
-            vx = vx * slower
-            vy = vy * slower
+            slower = one / (one + step.h * const(pick(linear, rows), w))
+            v = v * slower
         if angular is not None:
-            w = w * (one / (one + step.h * const(angular[row], lane)))
-        mover.vx = vx
-        mover.vy = vy
-        mover.w = w
+            w = w * (one / (one + step.h * const(pick(angular, rows), w)))
+        store(movers, rows, v, w, mover.turned)
 
 
 @kernel
@@ -104,27 +115,25 @@ def turned_by(q, angle):
 
 
 @kernel
-def integrate_positions(moving, movers, h):
+def integrate_positions(first, last, moving, movers, h):
     """d += h v, and the rotation likewise."""
-    for k in range(len(moving)):
-        mover = movers[moving[k]]
+    for k in range(first, last):
+        rows = eight_of(moving, WIDTH * k)
+        mover = load(movers, rows)
         angle = h * mover.w
-        q = turned_by(Vec2(mover.cosine, mover.sine), angle)
-        mover.dx += h * mover.vx
-        mover.dy += h * mover.vy
-        mover.turned += angle
-        mover.cosine = q.x
-        mover.sine = q.y
+        q = turned_by(mover.q, angle)
+        d = mover.d + mover.v * h
+        store_row(movers, rows, (mover.v.x, mover.v.y, mover.w, mover.turned + angle, d.x, d.y, q.x, q.y))
 
 
 @kernel
-def finish(order, bodies, motions, movers):
-    """Moves the bodies to where the substeps took them; forces are used up.
+def finish(first, last, order, bodies, motions, movers):
+    """Moves the bodies from `first` to before `last` to where the substeps took them; forces are used up.
 
-    Returns the row of the first body whose state is no longer finite, -1 if there is none.
+    Returns the rank of the first body whose state is no longer finite, -1 if there is none.
     """
     lost = -1
-    for rank in range(len(order)):
+    for rank in range(first, last):
         row = order[rank]
         body = bodies[row]
         body.force_x = 0.0
@@ -144,5 +153,17 @@ def finish(order, bodies, motions, movers):
             finite = np.isfinite(body.x) and np.isfinite(body.y) and np.isfinite(body.angle)
             finite = finite and np.isfinite(motion.vx) and np.isfinite(motion.vy) and np.isfinite(motion.w)
             if lost < 0 and not finite:
-                lost = row
+                lost = rank
     return lost
+
+
+@kernel
+def finish_together(leads, board, firsts, lost, order, bodies, motions, movers):
+    """The same by several threads: part p from firsts[p] to before firsts[p + 1]."""
+    part = take_part(board, len(lost))
+    while part >= 0:
+        lost[part] = finish(firsts[part], firsts[part + 1], order, bodies, motions, movers)
+        count_up(board, DONE)
+        part = take_part(board, len(lost))
+    if leads:
+        wait_for_all(board, len(lost))

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from engine.jit import kernel
-from engine.lanes import const, maximum, select
+from engine.lanes import const, holds_somewhere, maximum, select
 from engine.mixing import mix
+from engine.rows import at, numbers_at, pick
 from engine.solvers.soft_step.contacts import approach
-from engine.solvers.soft_step.movers import store
+from engine.solvers.soft_step.movers import load, store
 from engine.vec2 import Vec2, cross
 
 VISITS = 8
@@ -15,63 +16,68 @@ each, what is left shrinks by the square of (1/m - a^2/I) / (1/m + a^2/I), a bei
 
 
 @kernel
-def prepare(constraints, count, arbiters, coefficients, rule, movers, restitutions):
+def prepare(first, last, slots, constraints, arbiters, coefficients, rule, motions, bounces):
     """Notes how fast the shapes approach before anything is solved."""
-    for k in range(count):
-        c = constraints[k]
-        row = restitutions[k]
-        arbiter = arbiters[c.arbiter]
-        row.restitution = const(mix(rule, coefficients[arbiter.shape1], coefficients[arbiter.shape2]), c.nx)
-        m1 = movers[c.body1]
-        m2 = movers[c.body2]
-        v1, v2, normal = Vec2(m1.vx, m1.vy), Vec2(m2.vx, m2.vy), Vec2(c.nx, c.ny)
-        row.a_speed = approach(
-            v1, m1.w, v2, m2.w, Vec2(c.a_r1_x, c.a_r1_y), Vec2(c.a_r2_x, c.a_r2_y), normal
-        )  # fmt: skip
-        row.b_speed = approach(
-            v1, m1.w, v2, m2.w, Vec2(c.b_r1_x, c.b_r1_y), Vec2(c.b_r2_x, c.b_r2_y), normal
-        )  # fmt: skip
+    for k in range(first, last):
+        c = at(constraints, k)
+        row = at(bounces, k)
+        arbiter = at(arbiters, numbers_at(slots, constraints, k))
+        mixed = mix(rule, pick(coefficients, arbiter.shape1), pick(coefficients, arbiter.shape2))
+        row.restitution = const(mixed, c.nx)
+        m1 = at(motions, c.body1)
+        m2 = at(motions, c.body2)
+        v1, w1, v2, w2, normal = Vec2(m1.vx, m1.vy), m1.w, Vec2(m2.vx, m2.vy), m2.w, Vec2(c.nx, c.ny)
+        row.a_speed = approach(v1, w1, v2, w2, Vec2(c.a_r1_x, c.a_r1_y), Vec2(c.a_r2_x, c.a_r2_y), normal)
+        row.b_speed = approach(v1, w1, v2, w2, Vec2(c.b_r1_x, c.b_r1_y), Vec2(c.b_r2_x, c.b_r2_y), normal)
 
 
 @kernel
-def change(speed, before, restitution, mass, impulse, given, threshold):
-    """The impulse to add so that shapes that met faster than the threshold part with e times that speed [N s].
+def bounces_at(row_restitution, before, given, threshold):
+    """Whether shapes met at a point faster than the threshold, and are of a kind that bounces."""
+    zero = const(0.0, before)
+    return (row_restitution > zero) & (before < -threshold) & (given > zero)
 
-    Only where they did meet (given > 0), and none at all where e is zero.
-    """
+
+@kernel
+def change(bounces, speed, before, restitution, mass, impulse):
+    """The impulse to add so that shapes that met part with e times that speed [N s]."""
     zero = const(0.0, speed)
     total = maximum(impulse - mass * (speed + restitution * before), zero)
-    bounces = (restitution > zero) & (before < -threshold) & (given > zero)
     return select(bounces, total - impulse, zero)
 
 
 @kernel
-def apply(constraints, restitutions, count, movers, steps):
+def apply(first, last, constraints, bounces, movers, step):
     """One pass over all contacts; the two points of one pair are visited in turn until they agree."""
-    threshold = steps[0].restitution_threshold
-    for k in range(count):
-        c = constraints[k]
-        row = restitutions[k]
-        m1 = movers[c.body1]
-        m2 = movers[c.body2]
+    for k in range(first, last):
+        c = at(constraints, k)
+        row = at(bounces, k)
+        e = row.restitution
+        bounces_a = bounces_at(e, row.a_speed, c.a_given, step.restitution_threshold)
+        bounces_b = bounces_at(e, row.b_speed, c.b_given, step.restitution_threshold)
+        if not holds_somewhere(bounces_a | bounces_b):
+            continue
+        m1 = load(movers, c.body1)
+        m2 = load(movers, c.body2)
         normal = Vec2(c.nx, c.ny)
-        v1, w1, v2, w2 = Vec2(m1.vx, m1.vy), m1.w, Vec2(m2.vx, m2.vy), m2.w
+        v1, w1, v2, w2 = m1.v, m1.w, m2.v, m2.w
+        im1, ii1, im2, ii2 = c.inverse_mass1, c.inverse_inertia1, c.inverse_mass2, c.inverse_inertia2
         ra1, ra2 = Vec2(c.a_r1_x, c.a_r1_y), Vec2(c.a_r2_x, c.a_r2_y)
         rb1, rb2 = Vec2(c.b_r1_x, c.b_r1_y), Vec2(c.b_r2_x, c.b_r2_y)
         for _ in range(VISITS):
             speed = approach(v1, w1, v2, w2, ra1, ra2, normal)
-            more = change(speed, row.a_speed, row.restitution, c.a_mass, c.a_impulse, c.a_given, threshold)
+            more = change(bounces_a, speed, row.a_speed, e, c.a_mass, c.a_impulse)
             c.a_impulse += more
             c.a_given += more
             push = normal * more
-            v1, w1 = v1 - push * c.inverse_mass1, w1 - c.inverse_inertia1 * cross(ra1, push)
-            v2, w2 = v2 + push * c.inverse_mass2, w2 + c.inverse_inertia2 * cross(ra2, push)
+            v1, w1 = v1 - push * im1, w1 - ii1 * cross(ra1, push)
+            v2, w2 = v2 + push * im2, w2 + ii2 * cross(ra2, push)
             speed = approach(v1, w1, v2, w2, rb1, rb2, normal)
-            more = change(speed, row.b_speed, row.restitution, c.b_mass, c.b_impulse, c.b_given, threshold)
+            more = change(bounces_b, speed, row.b_speed, e, c.b_mass, c.b_impulse)
             c.b_impulse += more
             c.b_given += more
             push = normal * more
-            v1, w1 = v1 - push * c.inverse_mass1, w1 - c.inverse_inertia1 * cross(rb1, push)
-            v2, w2 = v2 + push * c.inverse_mass2, w2 + c.inverse_inertia2 * cross(rb2, push)
-        store(m1, v1, w1)
-        store(m2, v2, w2)
+            v1, w1 = v1 - push * im1, w1 - ii1 * cross(rb1, push)
+            v2, w2 = v2 + push * im2, w2 + ii2 * cross(rb2, push)
+        store(movers, c.body1, v1, w1, m1.turned)
+        store(movers, c.body2, v2, w2, m2.turned)

@@ -1,8 +1,9 @@
 """What soft_step works on within one step: made afresh each time, so no part of a snapshot.
 
 A mover is a row of eight numbers, as wide as a vector of the machine. A constraint holds all that a pass needs of a
-pair but for its two movers, so that a pass reads one row after another. What an effect adds stands in a table of its
-own with a row for each constraint: friction, belts, rolling resistance, restitution.
+pair but for its two movers, so that a pass reads one row after another; a block is eight of them, field by field
+(engine/rows.py, `wide`). What an effect adds stands in a table of its own with a row for each constraint: friction,
+belts, rolling resistance, restitution.
 """
 
 from __future__ import annotations
@@ -33,6 +34,13 @@ def mover_dtype(precision: str) -> np.dtype:
 
 
 @cache
+def drive_dtype(precision: str) -> np.dtype:
+    """What forces do to a body in a substep; one row a dynamic body."""
+    real = REALS[precision]
+    return np.dtype([("vx", real), ("vy", real), ("w", real), ("spare", real)])  # [m/s], [rad/s]
+
+
+@cache
 def constraint_dtype(precision: str) -> np.dtype:
     """The normal part of a pair's contacts; a second point that is not there has no mass, so it gives nothing."""
     real = REALS[precision]
@@ -50,16 +58,12 @@ def constraint_dtype(precision: str) -> np.dtype:
         [
             ("body1", np.int32),  # rows of the movers
             ("body2", np.int32),
-            ("arbiter", np.int64),
             ("nx", real),  # unit normal, from body1 to body2
             ("ny", real),
             ("inverse_mass1", real),
             ("inverse_inertia1", real),
             ("inverse_mass2", real),
             ("inverse_inertia2", real),
-            ("bias_rate", real),  # softness, see softness.py
-            ("mass_scale", real),
-            ("impulse_scale", real),
             *((f"a_{name}", kind) for name, kind in point),
             *((f"b_{name}", kind) for name, kind in point),
         ]

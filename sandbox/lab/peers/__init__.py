@@ -6,9 +6,11 @@ from collections.abc import Callable
 
 from sandbox.lab.peers.box2d_lite import Box2DLite
 from sandbox.lab.peers.protocol import CannotMirror, Peer, PeerError, PeerWorld
+from sandbox.lab.peers.pyb2d3_peer import Pyb2d3
 from sandbox.lab.peers.pymunk_peer import Pymunk
 
-INSTALLABLE: tuple[Callable[[], Peer], ...] = (Pymunk,)
-"""What `tumble bench --peers` compares with: all from the extra `peers`, none imported before it is asked for."""
+INSTALLABLE: tuple[Callable[[int], Peer], ...] = (Pyb2d3, Pymunk)
+"""What `tumble bench --peers` compares with: all from the extra `peers`, none imported before it is asked for.
+Each is called with the number of threads."""
 
-__all__ = ["INSTALLABLE", "Box2DLite", "CannotMirror", "Peer", "PeerError", "PeerWorld", "Pymunk"]
+__all__ = ["INSTALLABLE", "Box2DLite", "CannotMirror", "Peer", "PeerError", "PeerWorld", "Pyb2d3", "Pymunk"]

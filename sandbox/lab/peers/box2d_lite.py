@@ -11,9 +11,10 @@ from pathlib import Path
 import numpy as np
 
 from engine import Box, World
-from sandbox.lab.peers.protocol import CannotMirror, PeerError, bias_factor, passes
+from sandbox.lab.peers.protocol import CannotMirror, PeerError, bias_factor, passes, refuse_effects
 from sandbox.lab.timing import Times
 
+KNOWN = frozenset({"gravity", "friction", "revolute joints", "joined without colliding"})
 DRIVER = Path(__file__).with_name("box2d_lite_driver.cpp")
 PARTS = ("include/box2d-lite/World.h", "src/World.cpp")  # a checkout has these
 FLAGS = ("-O3", "-DNDEBUG")  # CMake's Release, which is what its own build makes
@@ -88,11 +89,16 @@ class Box2DLiteWorld:
 
 def scene_text(world: World, dt: float) -> str:
     """The world as the driver reads it. CannotMirror if there is something in it that Box2D Lite has not."""
+    refuse_effects(world, KNOWN)
     settings = world.settings
     switches = (settings.accumulate_impulses, settings.warm_starting, settings.position_correction)
     lines = [_line("world", dt, *settings.gravity, passes(world), *map(int, switches))]
     lines.append(_line("bodies", world.body_count))
     for body in world.bodies:
+        if len(body.shapes) != 1 or body.center != body.position:
+            raise CannotMirror(f"its bodies have one box about their origin, body {body.serial} has not")
+        if body.kind == "kinematic" or body.fixed_rotation:
+            raise CannotMirror(f"it has no kinematic bodies and no fixed rotation, as body {body.serial} has")
         if not isinstance(body.shape, Box):
             raise CannotMirror(f"it has boxes only, body {body.serial} is a {body.shape.name}")
         mass = 0.0 if body.kind == "static" else body.mass

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Container
 from typing import Protocol
 
 import numpy as np
@@ -54,3 +55,20 @@ def passes(world: World) -> int:
 def bias_factor(joint: RevoluteJoint) -> float:
     """Part of a joint's separation that a step removes: the talk's where it has none of its own."""
     return JOINT_BIAS_FACTOR if joint.bias_factor is None else joint.bias_factor
+
+
+ON_REQUEST = frozenset({"diagnostics", "explosions"})  # no part of a step
+
+
+def refuse_effects(world: World, known: Container[str]) -> None:
+    """CannotMirror if the world calls for an effect that the engine is not known to have."""
+    for effect in world.effects:
+        if effect.called_for and effect.name not in known and effect.name not in ON_REQUEST:
+            raise CannotMirror(f"it has no {effect.name}: {effect.because}")
+
+
+def refuse_switches(world: World) -> None:
+    """CannotMirror if one of the talk's switches is off that such engines have not."""
+    for name in ("accumulate_impulses", "warm_starting"):
+        if not getattr(world.settings, name):
+            raise CannotMirror(f"{name} cannot be switched off in it")

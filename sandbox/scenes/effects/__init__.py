@@ -9,6 +9,7 @@ from sandbox.scenes.effects import media
 from sandbox.scenes.effects import attraction
 from sandbox.scenes.effects import explosion
 from sandbox.scenes.effects import filters
+from sandbox.scenes.effects import motors
 # isort: on
 
-__all__ = ["attraction", "explosion", "filters", "media", "motion", "surfaces"]
+__all__ = ["attraction", "explosion", "filters", "media", "motion", "motors", "surfaces"]

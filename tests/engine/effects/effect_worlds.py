@@ -53,7 +53,22 @@ def blasted(world: World) -> None:
     world.explode((3, 0.2), radius=2.0, falloff=3.0, impulse=1.5)
 
 
-WORLDS: dict[str, Callable[[World], None]] = {build.__name__: build for build in (air, pool, attracted, blasted)}
+def motored(world: World) -> None:
+    """Three joints: a motor too weak for its load, none, and one that turns two bodies on each other."""
+    pin = world.create_body(kind="static")
+    bar = world.create_body(Box(2, 0.2), position=(1, 0))
+    ball = world.create_body(Circle(0.4), position=(2, -0.5))
+    wheel = world.create_body(Polygon(POINTS), position=(2.2, -1.2))
+    world.create_joint_revolute(pin, bar, anchor=(0, 0), motor_speed=1.0, max_motor_torque=3.0)
+    world.create_joint_revolute(bar, ball, anchor=(2, 0), collide_connected=False)
+    world.create_joint_revolute(
+        ball, wheel, anchor=(2.2, -1), collide_connected=False, motor_speed=-9.0, max_motor_torque=0.7
+    )
+
+
+WORLDS: dict[str, Callable[[World], None]] = {
+    build.__name__: build for build in (air, pool, attracted, blasted, motored)
+}
 SOLVERS = ("soft_step", "sequential_impulses")
 
 

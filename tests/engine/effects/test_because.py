@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 import pytest
 
@@ -29,7 +30,7 @@ def because(world: World) -> dict[str, str]:
 PLAIN = {"gravity": "gravity is (0, -10) m/s²", "friction": "3 of 3 shapes have friction"}
 
 
-def join(world: World, **arguments: bool) -> None:
+def join(world: World, **arguments: Any) -> None:
     a, b = world.bodies[1:]
     world.create_joint_revolute(a, b, anchor=(1.5, 0.5), **arguments)
 
@@ -53,6 +54,10 @@ CALLS: dict[str, tuple[Callable[[World], None], dict[str, str]]] = {
     "angular": (set_body("angular_damping", 0.5), {"angular damping": "1 of 3 bodies has angular damping"}),
     "scale": (set_body("gravity_scale", 0.5), {"gravity scale": "1 of 3 bodies has a gravity scale"}),
     "joint": (join, {"revolute joints": "1 revolute joint"}),
+    "motor": (
+        lambda world: join(world, motor_speed=0.0),
+        {"revolute joints": "1 revolute joint", "revolute motors": "1 revolute joint with a motor"},
+    ),
     "passing": (
         lambda world: join(world, collide_connected=False),
         {"revolute joints": "1 revolute joint", "joined without colliding": "1 joint of bodies that do not collide"},

@@ -25,6 +25,7 @@ ELSEWHERE = {
     "rolling resistance": ("engine.solvers.soft_step.rolling.",),
     "conveyor": ("engine.solvers.soft_step.friction.prepare_belts",),
     "revolute joints": ("engine.joints.",),
+    "revolute motors": ("engine.joints.revolute_motor.",),
     "joined without colliding": ("engine.pairs.drop_joined",),
     "diagnostics": ("engine.diagnostics.",),
 }

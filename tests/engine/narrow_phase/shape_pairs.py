@@ -157,7 +157,7 @@ def points_of(manifold: Manifold) -> list[tuple[np.ndarray, float, int]]:
         (manifold.point1, manifold.separation1, manifold.feature1),
         (manifold.point2, manifold.separation2, manifold.feature2),
     ]
-    return [(np.array([p.x, p.y], float), float(s), int(f)) for p, s, f in both[: manifold.count]]
+    return [(np.array([p.x, p.y], float), float(s), int(f)) for p, s, f in both[: int(manifold.count)]]
 
 
 def normal_of(manifold: Manifold) -> np.ndarray:

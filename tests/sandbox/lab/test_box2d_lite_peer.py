@@ -57,6 +57,22 @@ def test_what_it_has_not_is_refused() -> None:
         scene_text(world, DT)
 
 
+@pytest.mark.parametrize(
+    ("properties", "reason"),
+    [
+        ({"offset": (0.5, 0.0)}, "its bodies have one box about their origin, body 0 has not"),
+        ({"kind": "kinematic"}, "it has no kinematic bodies and no fixed rotation, as body 0 has"),
+        ({"fixed_rotation": True}, "it has no kinematic bodies and no fixed rotation, as body 0 has"),
+        ({"restitution": 0.5}, "it has no restitution: 1 of 1 shapes has restitution"),
+    ],
+)
+def test_bodies_that_it_has_not_are_refused(properties: dict, reason: str) -> None:
+    world = World()
+    world.create_body(Box(1, 1), **properties)
+    with pytest.raises(CannotMirror, match=f"^{reason}$"):
+        scene_text(world, DT)
+
+
 def test_the_driver_is_compiled_asked_and_ended(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     checkout = fake.make_checkout(tmp_path / "checkout")
     fake.install_driver(monkeypatch, tmp_path / "bin")

@@ -1,4 +1,7 @@
-"""In every scene: the code of all effects that it does not call for is forced on, and nothing changes."""
+"""In every scene: the code of all effects that it does not call for is forced on, and nothing changes.
+
+Those of the benchmark are left out: they are large, and the code of magnets looks at every pair.
+"""
 
 from __future__ import annotations
 
@@ -18,7 +21,7 @@ def run(world: World) -> str:
     return world.state_hash()
 
 
-@pytest.mark.parametrize("name", SCENES)
+@pytest.mark.parametrize("name", [name for name in SCENES if not name.startswith("Benchmark/")])
 def test_forced_code_without_content_changes_nothing(name: str) -> None:
     scene = find_scene(name)
     world = scene.make()

@@ -1,0 +1,180 @@
+"""Many steps in a row that stay in compiled code, as long as nothing calls for Python.
+
+The stages are those of engine/stages.py in their order, and the kernels are the very ones that these call. Python takes
+over in the middle of a step when a shape has left its fat box, so that pairs may change; when something began or ceased
+to touch, so that it needs a colour; and when a body is lost.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numba
+import numpy as np
+
+from engine.broad_phase.dynamic_tree import DynamicTree
+from engine.broad_phase.tree_leaves import mark_outside
+from engine.calling import address_of, call
+from engine.colouring import any_change
+from engine.jit import kernel
+from engine.narrow_phase.recycling import choose_pairs, write_boxes
+from engine.rows import wide
+from engine.settings import Settings
+from engine.shapes.placing import GROUP
+from engine.simd import WIDTH
+from engine.solvers import SOLVERS
+from engine.solvers.soft_step import SOFT_STEP, movers, plan_of
+from engine.solvers.soft_step.work import run
+from engine.stages import STAGES, bounding, choosing, colliding, lost_in_solver
+from engine.state import State
+from engine.tables import empty
+from engine.threads import usable
+
+AT_MOST = 1000  # steps without a look at Python, which may have been told to stop
+WORTHWHILE = 8  # steps that make up for what it takes to begin
+LONGEST_PAUSE = 31  # steps that Python takes before the next try, where the last ones were not worthwhile
+FIND_PAIRS, GIVE_COLOURS, NOWHERE = 0, 3, -1  # the stage from which Python goes on
+LOST = len(STAGES)
+
+GROUPS = wide(GROUP)
+CALL = np.dtype([("address", np.int64), ("first", np.int64), ("last", np.int64)])
+"""The kernel of one kind of shape or of pair, and where its own begin and end in the list of all."""
+
+ADDRESSES = np.dtype(
+    [(name, np.int64) for name in ("mark_outside", "write_boxes", "choose_pairs", "any_change", "run", "finish")]
+)
+
+
+@kernel(_nrt=False)  # as in soft_step/work.py
+def repeat(
+    number, dt, clock, report, addresses, outlines, colliders, groups, chosen, nothing, bounds, outside, boxes, choice,
+    collision, change, solution, end,
+):  # fmt: skip
+    """Takes up to `number` steps, and adds their time to clock[0].
+
+    Writes into report (3,) int64 how many it took, from which stage Python must go on with the next one, and which
+    body was lost. The tuples, from `bounds` on, are what the kernels take, but for what differs from kind to kind.
+    """
+    to = addresses[0]
+    for done in range(number):
+        report[0] = done
+        for k in range(len(outlines)):
+            kind = outlines[k]
+            call(kind.address, None, (groups[kind.first : kind.last], *bounds))
+        if call(to.mark_outside, 0, outside) > 0:
+            report[1] = FIND_PAIRS
+            return
+        call(to.write_boxes, None, boxes)
+        for k in range(len(colliders)):
+            kind = colliders[k]
+            last = kind.first + call(to.choose_pairs, 0, (kind.first, kind.last, *choice))
+            if last > kind.first:
+                for place in range(last, last + WIDTH):
+                    chosen[place] = nothing
+                call(kind.address, None, (chosen, kind.first, last, *collision))
+        if call(to.any_change, False, change):
+            report[1] = GIVE_COLOURS
+            return
+        call(to.run, None, solution)
+        report[2] = call(to.finish, 0, end)
+        if report[2] >= 0:
+            report[1] = LOST
+            return
+        clock[0] += dt
+    report[0] = number
+    report[1] = NOWHERE
+
+
+class Repetition(NamedTuple):
+    """What `repeat` needs after number, dt, clock and report, as long as the solver's plan is the same."""
+
+    plan: Any
+    arguments: tuple
+
+
+def repetition(state: State) -> Repetition:
+    """Looks up all tables, and where the compiled kernels are."""
+    table, plan, tree = state.arbiters, state.solve_plan, state.broad_phase
+    assert isinstance(tree, DynamicTree)
+    bodies, motions, order = state.bodies.tables["bodies"], state.bodies.tables["motions"], state.bodies.order
+    groups = _joined([group for _, group in state.bounds_plan], GROUPS)
+    indices = _joined([own for _, own, _ in state.meetings], np.dtype(np.int64))
+    chosen = np.empty(len(indices) + WIDTH, np.int64)
+
+    bounds = bounding(state)
+    outside = (state.bounds, *tree.borders())
+    boxes = (state.bounds, state.shapes.order, state.boxes)
+    choice = choosing(state, indices, chosen)
+    collision = colliding(state)
+    change = (table.rows, table.count)
+    end = (0, len(order), order, bodies, motions, state.scratch["movers"])
+
+    def find(kernel: Any, result: Any, *arguments: Any) -> int:
+        if kernel not in state.addresses:
+            state.addresses[kernel] = address_of(kernel, result, arguments)
+        return state.addresses[kernel]
+
+    addresses = empty(1, ADDRESSES)
+    addresses[0] = (
+        find(mark_outside, 0, *outside), find(write_boxes, None, *boxes), find(choose_pairs, 0, 0, 0, *choice),
+        find(any_change, False, *change), find(run, None, *plan.arguments), find(movers.finish, 0, *end),
+    )  # fmt: skip
+    outlines, colliders = empty(len(state.bounds_plan), CALL), empty(len(state.meetings), CALL)
+    first = 0
+    for k, (write_bounds, own) in enumerate(state.bounds_plan):
+        outlines[k] = (find(write_bounds, None, own, *bounds), first, first + len(own))
+        first += len(own)
+    first = 0
+    for k, (collide, own, count) in enumerate(state.meetings):
+        colliders[k] = (find(collide, None, chosen, 0, 0, *collision), first, first + count)
+        first += len(own)
+    return Repetition(
+        plan,
+        (
+            addresses, outlines, colliders, groups, chosen, table.nothing, bounds, outside, boxes, choice, collision,
+            change, plan.arguments, end,
+        ),
+    )  # fmt: skip
+
+
+def _joined(lists: list[np.ndarray], dtype: np.dtype) -> np.ndarray:
+    """One after the other."""
+    return lists[0] if len(lists) == 1 else np.concatenate([np.empty(0, dtype), *lists])
+
+
+def can_repeat(state: State, settings: Settings) -> bool:
+    """Whether steps of this world, as it is prepared, can stay in compiled code."""
+    return (
+        not (numba.config.DISABLE_JIT or state.pairs_are_stale or state.colours_are_stale or state.forces)
+        and state.prepared_carried == 1.0
+        and SOLVERS[settings.solver] is SOFT_STEP
+        and isinstance(state.broad_phase, DynamicTree)
+        and usable(state.threads, max(len(state.bodies.order), state.arbiters.count)) == 1
+    )
+
+
+def run_quietly(state: State, settings: Settings, steps: int, dt: float) -> tuple[int, int]:
+    """Takes as many of the steps as it can. The state must be prepared for dt.
+
+    Returns how many, and from which stage Python must go on with the next one: NOWHERE if nothing calls for it.
+    StepError as in World.step.
+    """
+    if state.pause_left > 0 or not can_repeat(state, settings):
+        state.pause_left = max(0, state.pause_left - 1)
+        return 0, FIND_PAIRS
+    plan = plan_of(state, settings)
+    if state.repetition is None or state.repetition.plan is not plan:
+        state.repetition = repetition(state)
+    clock, report = np.array([state.time]), np.zeros(3, np.int64)
+    repeat(min(steps, AT_MOST), dt, clock, report, *state.repetition.arguments)
+    done, stage, lost = (int(number) for number in report)
+    if stage != NOWHERE:
+        state.pause = 0 if done >= WORTHWHILE else min(2 * state.pause + 1, LONGEST_PAUSE)
+        state.pause_left = state.pause
+    if done:
+        state.step_count += done
+        state.time = float(clock[0])
+        state.last_dt = dt
+    if stage == LOST:
+        raise lost_in_solver(state, int(state.bodies.order[lost]))
+    return done, stage
