@@ -1,9 +1,10 @@
 """Colours: contacts of one colour share no body that moves, so they can be solved side by side.
 
-An arbiter gets a colour when its shapes begin to touch, the lowest that neither body has among its other contacts,
-and keeps it until they part. So little changes from step to step; and since the colour stands in the arbiter's row, a
-restored snapshot goes on with the same ones. Which arbiter comes first follows from their order, hence from the order
-of creation. A body with more contacts than there are colours leaves the rest to the overflow, solved one by one.
+An arbiter gets a colour when its shapes begin to touch, the lowest that neither body has among its other contacts, with
+what no impulse moves the lowest from HELD_FROM on, and keeps it until they part. So little changes from step to step;
+and since the colour stands in the arbiter's row, a restored snapshot goes on with the same ones. Which arbiter comes
+first follows from their order, hence from the order of creation. A body with more contacts than there are colours
+leaves the rest to the overflow, solved one by one.
 """
 
 from __future__ import annotations
@@ -15,6 +16,10 @@ from engine.jit import kernel
 COLOURS = 24
 """Most contacts of one body that can be solved side by side with others'. More: a stage more for each; fewer: what is
 left over is solved one by one."""
+
+HELD_FROM = 12
+"""Contacts with what no impulse moves take colours from here on, so they are solved last and have the last word: what
+cannot give way. With the lowest ones, boxes that were put into each other part twice as fast (docs/decisions.md)."""
 
 OVERFLOW = COLOURS
 NONE = -1
@@ -30,9 +35,10 @@ def any_change(arbiters, count):
 
 
 @kernel
-def lowest_free(taken):
-    """The lowest colour not in a set, OVERFLOW if all are."""
-    for colour in range(COLOURS):
+def lowest_free(taken, held):
+    """The lowest colour not in a set, OVERFLOW if all are. held: whether it is for what cannot give way."""
+    for k in range(COLOURS):
+        colour = (k + HELD_FROM) % COLOURS if held else k
         if taken >> colour & 1 == 0:
             return colour
     return OVERFLOW
@@ -69,7 +75,8 @@ def give_colours(arbiters, count, motions, taken):
 @kernel
 def take_lowest(body1, body2, motions, taken):
     """The lowest colour that neither body has yet; from now on both have it."""
-    colour = lowest_free(colours_at(body1, motions, taken) | colours_at(body2, motions, taken))
+    held = motions[body1].inverse_mass == 0 or motions[body2].inverse_mass == 0
+    colour = lowest_free(colours_at(body1, motions, taken) | colours_at(body2, motions, taken), held)
     if colour < OVERFLOW:
         taken[body1] |= np.int64(1) << np.int64(colour)
         taken[body2] |= np.int64(1) << np.int64(colour)

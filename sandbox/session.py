@@ -33,7 +33,7 @@ class Session:
     """A running scene that any number of viewers may watch, and any thread may send commands to.
 
     scene: name. settings: overrides of the world's settings. open_recorder: makes the viewer that writes a recording,
-    None if there is no recording here. record_dir: where recordings go.
+    None if there is no recording here. record_dir: where recordings go. threads: that a step may use.
     """
 
     def __init__(
@@ -43,9 +43,10 @@ class Session:
         dt: float = TIME_STEP,
         open_recorder: OpenRecorder | None = None,
         record_dir: Path | None = None,
+        threads: int = 1,
         **settings: Any,
     ) -> None:
-        self._simulation = Simulation(scene, dt, **settings)
+        self._simulation = Simulation(scene, dt, threads=threads, **settings)
         self._history = History(self._simulation)
         self._queue: queue.Queue[Any] = queue.Queue(MOST_QUEUED)
         self._viewers: list[Viewer] = []
@@ -275,7 +276,7 @@ class Session:
         settings = old.world.settings.to_dict()
         if scene.name != old.scene.name:
             settings["gravity"] = scene.defaults().gravity
-        self._simulation = Simulation(scene, old.dt, **settings)
+        self._simulation = Simulation(scene, old.dt, threads=old.world.threads, **settings)
         self._simulation.content = old.content + 1
         self._history = History(self._simulation)
         self._applied.clear()

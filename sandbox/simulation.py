@@ -19,15 +19,15 @@ from sandbox.hands import Hand, pull
 from sandbox.scenes import Scene, find_scene
 
 TIME_STEP = 1.0 / 60.0  # [s]
-MOST_BODIES = 5000  # that commands may fill a world with
+MOST_BODIES = 25_000  # that commands may fill a world with
 
 
 class Simulation:
     """One scene's run. `world` may be read; change it through commands, or the run cannot be repeated."""
 
-    def __init__(self, scene: str | Scene, dt: float = TIME_STEP, **settings: Any) -> None:
+    def __init__(self, scene: str | Scene, dt: float = TIME_STEP, *, threads: int = 1, **settings: Any) -> None:
         self.scene = find_scene(scene) if isinstance(scene, str) else scene
-        self.world = self.scene.make(**settings)
+        self.world = self.scene.make(threads=threads, **settings)
         self.dt = dt
         self.hands: dict[int, Hand] = {}
         self.bomb_serial = -1

@@ -25,9 +25,9 @@ class Scene:
     settings: Mapping[str, Any] = field(default_factory=dict)  # where it departs from a world's defaults
     shows: tuple[Criterion, ...] = ()  # what there is to see, as numbers
 
-    def make(self, **settings: Any) -> World:
+    def make(self, *, threads: int = 1, **settings: Any) -> World:
         """A world with this scene in it; settings win over the scene's own. ValueError if they do not suit it."""
-        world = World(**self.defaults().changed(settings).to_dict())
+        world = World(threads=threads, **self.defaults().changed(settings).to_dict())
         self.build(world)
         return world
 

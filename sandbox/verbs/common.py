@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import os
 import sys
 from collections.abc import Mapping
 from pathlib import Path
@@ -11,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from engine import World, validate
 from engine.settings import MOST, describe
+from engine.threads import MOST as MOST_THREADS
 from sandbox.scenes import Scene, UnknownScene, find_scene
 
 if TYPE_CHECKING:
@@ -63,6 +65,15 @@ def add_settings(parser: argparse.ArgumentParser) -> None:
                 parser.add_argument(flag, type=whole_number(1, MOST[info.name]), metavar="N", help=about)
             else:
                 parser.add_argument(flag, choices=info.choices, help=about)
+
+
+def add_threads(parser: argparse.ArgumentParser) -> None:
+    """--threads: how many a step may use. Unless told otherwise one core is left, to the page or to the disk."""
+    spare = max(1, (os.cpu_count() or 1) - 1)
+    parser.add_argument(
+        "--threads", type=whole_number(1, MOST_THREADS), default=spare, metavar="N",
+        help=f"that a step may use; default: all cores but one, here {spare}",
+    )  # fmt: skip
 
 
 def chosen_settings(options: argparse.Namespace) -> dict[str, Any]:

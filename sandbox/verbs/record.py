@@ -18,6 +18,7 @@ from sandbox.verbs.common import (
     BadInput,
     add_json,
     add_settings,
+    add_threads,
     chosen_settings,
     made,
     report,
@@ -37,6 +38,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--steps", type=whole_number(1, 10_000_000), default=600, metavar="N", help="default: 600")
     parser.add_argument("--dt", type=time_step, default=TIME_STEP, metavar="SECONDS", help="default: 1/60")
     add_settings(parser)
+    add_threads(parser)
     add_json(parser)
 
 
@@ -46,7 +48,7 @@ def run(options: argparse.Namespace) -> int:
     settings = chosen_settings(options)
     scene = scene_named(options.scene)
     made(scene, settings)
-    simulation = Simulation(scene, options.dt, **settings)
+    simulation = Simulation(scene, options.dt, threads=options.threads, **settings)
     if not options.output.parent.is_dir():
         raise BadInput(f"{options.output}: its folder does not exist")
     if options.output.exists() and not options.output.is_file():  # a folder, a device: nothing to put a file over

@@ -15,7 +15,16 @@ from sandbox.recorder import RecordingStart
 from sandbox.session import Session
 from sandbox.signals import interruptible, stop_requested
 from sandbox.simulation import TIME_STEP
-from sandbox.verbs.common import BadInput, add_address, add_settings, chosen_settings, made, say, scene_named
+from sandbox.verbs.common import (
+    BadInput,
+    add_address,
+    add_settings,
+    add_threads,
+    chosen_settings,
+    made,
+    say,
+    scene_named,
+)
 from sandbox.verbs.effects import SETTLED
 from sandbox.viewer import Viewer
 
@@ -30,6 +39,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("scene", nargs="?", default=DEFAULT_SCENE, help=f"default: {DEFAULT_SCENE}")
     add_address(parser)
     add_settings(parser)
+    add_threads(parser)
     parser.add_argument("--record-dir", type=Path, default=Path("runs"), metavar="DIR", help="default: runs")
 
 
@@ -66,7 +76,9 @@ def run(options: argparse.Namespace) -> int:
     with interruptible():
         rehearse(scene, say, **settings)
     with stop_requested() as stop:
-        session = Session(scene.name, open_recorder=open_recorder, record_dir=options.record_dir, **settings)
+        session = Session(
+            scene.name, open_recorder=open_recorder, record_dir=options.record_dir, threads=options.threads, **settings
+        )
         try:
             app = App(session, host=options.host, port=options.port, measure_effects=lambda: effect_costs(session))
         except ListenError as error:

@@ -11,7 +11,17 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from engine import Box, Circle, World
-from engine.colouring import COLOURS, NONE, OVERFLOW, Layout, any_change, colour_joints, count_colours, give_colours
+from engine.colouring import (
+    COLOURS,
+    HELD_FROM,
+    NONE,
+    OVERFLOW,
+    Layout,
+    any_change,
+    colour_joints,
+    count_colours,
+    give_colours,
+)
 from engine.tables import arbiter_dtype, empty, motion_dtype, revolute_dtype
 from tests.engine.worlds import DT, busy, floor, gathering, run
 
@@ -47,6 +57,12 @@ class Contacts:
     def colours(self) -> list[int]:
         return self.rows["colour"].tolist()
 
+    def order(self, k: int) -> list[int]:
+        """In which order colours are looked at for one: with what does not move from HELD_FROM on."""
+        row = self.rows[k]
+        held = not self.motions["inverse_mass"][[row["body1"], row["body2"]]].all()
+        return [(c + held * HELD_FROM) % COLOURS for c in range(COLOURS)]
+
     def rivals(self, k: int) -> set[int]:
         """Colours of the others at the bodies of one that move."""
         row = self.rows[k]
@@ -81,7 +97,8 @@ def test_no_two_of_one_colour_share_a_body_that_moves(data: st.DataObject, pairs
             if old != NONE and new != NONE:
                 assert old == new, "it is kept, whoever comes and goes"
             elif new not in (NONE, OVERFLOW):
-                assert set(range(new)) <= contacts.rivals(k), "the lowest that is free"
+                order = contacts.order(k)
+                assert set(order[: order.index(new)]) <= contacts.rivals(k), "the first that is free"
         before = after
 
 
@@ -104,8 +121,8 @@ def test_a_body_that_begins_to_move_has_its_colours_mended(data: st.DataObject, 
 def test_colours_of_a_row() -> None:
     row = [(k, k + 1) for k in range(BODIES - 1)]
     contacts = Contacts(row, [False] + [True] * (BODIES - 1))
-    assert contacts.touch([True] * len(row)) == [0, 1] * 5 + [0]
-    assert contacts.touch([True, False] * 5 + [True]) == [0, NONE] * 5 + [0]
+    assert contacts.touch([True] * len(row)) == [HELD_FROM] + [0, 1] * 5
+    assert contacts.touch([True, False] * 5 + [True]) == [HELD_FROM, NONE] + [1, NONE] * 4 + [1]
     assert contacts.touch([False, True] * 5 + [False]) == [NONE, 0] * 5 + [NONE], "what was given back is free"
 
 
@@ -113,7 +130,7 @@ def test_colours_of_a_row() -> None:
 def test_a_floor_may_have_as_many_of_a_colour_as_it_likes() -> None:
     count = 3 * COLOURS
     contacts = Contacts([(0, 1 + k) for k in range(count)], [False] + [True] * count)
-    assert contacts.touch([True] * count) == [0] * count
+    assert contacts.touch([True] * count) == [HELD_FROM] * count
 
 
 @plain_too

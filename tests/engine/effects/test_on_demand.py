@@ -24,7 +24,7 @@ ELSEWHERE = {
     "restitution": ("engine.solvers.soft_step.restitution.",),
     "rolling resistance": ("engine.solvers.soft_step.rolling.",),
     "conveyor": ("engine.solvers.soft_step.friction.prepare_belts",),
-    "revolute joints": ("engine.joints.",),
+    "revolute joints": ("engine.joints.", "engine.solvers.soft_step.joints."),
     "revolute motors": ("engine.joints.revolute_motor.",),
     "joined without colliding": ("engine.pairs.drop_joined",),
     "diagnostics": ("engine.diagnostics.",),
@@ -63,7 +63,7 @@ def test_a_plain_pyramid_compiles_no_kernel_of_an_unused_effect(pyramid: dict[bo
     signatures = pyramid[True]["signatures"]
     assert pyramid[True]["used"] == sorted(plain_pyramid.USED)
     compiled = {name for name, found in signatures.items() if found}
-    assert "engine.solvers.soft_step.substeps.run_substeps" in compiled
+    assert "engine.solvers.soft_step.work.run" in compiled
     assert not {name for name in compiled if name.startswith("engine.effects.")}
     for effect, places in ELSEWHERE.items():
         for place in places:
