@@ -75,7 +75,7 @@ def _count_up(typing, counters, place):
 @intrinsic
 def _read_now(typing, counters, place):
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        return builder.load_atomic(_address(context, builder, counters, *arguments), "acquire", 8)
+        return builder.load_atomic(_address(context, builder, counters, *arguments), "seq_cst", 8)
 
     return types.int64(counters, types.intp), generate
 

@@ -19,7 +19,7 @@ left over is solved one by one."""
 
 HELD_FROM = 12
 """Contacts with what no impulse moves take colours from here on, so they are solved last and have the last word: what
-cannot give way. With the lowest ones, boxes that were put into each other part twice as fast (docs/decisions.md)."""
+cannot give way. With the lowest ones, boxes that were put into each other part faster (docs/decisions.md)."""
 
 OVERFLOW = COLOURS
 NONE = -1
@@ -36,7 +36,7 @@ def any_change(arbiters, count):
 
 @kernel
 def lowest_free(taken, held):
-    """The lowest colour not in a set, OVERFLOW if all are. held: whether it is for what cannot give way."""
+    """The first colour not in a set, OVERFLOW if all are. held: whether it is for what cannot give way."""
     for k in range(COLOURS):
         colour = (k + HELD_FROM) % COLOURS if held else k
         if taken >> colour & 1 == 0:
@@ -74,7 +74,7 @@ def give_colours(arbiters, count, motions, taken):
 
 @kernel
 def take_lowest(body1, body2, motions, taken):
-    """The lowest colour that neither body has yet; from now on both have it."""
+    """The first colour that neither body has yet; from now on both have it."""
     held = motions[body1].inverse_mass == 0 or motions[body2].inverse_mass == 0
     colour = lowest_free(colours_at(body1, motions, taken) | colours_at(body2, motions, taken), held)
     if colour < OVERFLOW:

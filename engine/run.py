@@ -31,6 +31,7 @@ from engine.tables import empty
 from engine.threads import usable
 
 AT_MOST = 1000  # steps without a look at Python, which may have been told to stop
+BODY_STEPS = 200_000  # likewise: steps times bodies
 WORTHWHILE = 8  # steps that make up for what it takes to begin
 LONGEST_PAUSE = 31  # steps that Python takes before the next try, where the last ones were not worthwhile
 FIND_PAIRS, GIVE_COLOURS, NOWHERE = 0, 3, -1  # the stage from which Python goes on
@@ -166,7 +167,8 @@ def run_quietly(state: State, settings: Settings, steps: int, dt: float) -> tupl
     if state.repetition is None or state.repetition.plan is not plan:
         state.repetition = repetition(state)
     clock, report = np.array([state.time]), np.zeros(3, np.int64)
-    repeat(min(steps, AT_MOST), dt, clock, report, *state.repetition.arguments)
+    most = max(1, min(AT_MOST, BODY_STEPS // max(1, len(state.bodies.order))))
+    repeat(min(steps, most), dt, clock, report, *state.repetition.arguments)
     done, stage, lost = (int(number) for number in report)
     if stage != NOWHERE:
         state.pause = 0 if done >= WORTHWHILE else min(2 * state.pause + 1, LONGEST_PAUSE)

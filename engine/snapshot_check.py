@@ -169,8 +169,8 @@ def check_arbiters(tables: Mapping[str, np.ndarray]) -> None:
     arbiters = tables["arbiters"]
     if tables["contacts"].shape != (len(arbiters), 2):
         raise refuse("contacts", "two to each arbiter")
-    if ((arbiters["count"] < 0) | (arbiters["count"] > 2)).any():
-        raise refuse("arbiters", "of 0 to 2 contacts")
+    if ((arbiters["count"] < 1) | (arbiters["count"] > 2)).any():
+        raise refuse("arbiters", "of 1 or 2 contacts")
     check_rows("arbiters", tables, arbiters["body1"], arbiters["body2"])
     shapes = tables["shapes.shapes"]
     for number in "12":

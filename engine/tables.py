@@ -240,12 +240,6 @@ def revolute_dtype(precision: str) -> np.dtype:
             ("impulse_y", real),
             ("given_x", real),  # what the last step gave body2 [N s]
             ("given_y", real),
-            ("apart_x", real),  # soft_step: from centre to centre as the step began [m]
-            ("apart_y", real),
-            ("give", real),  # and softness in a substep [1/kg]
-            ("bias_rate", real),
-            ("mass_scale", real),
-            ("impulse_scale", real),
         ]
     )
 

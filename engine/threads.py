@@ -12,6 +12,7 @@ may run them crash where two Python threads enter at once.
 
 from __future__ import annotations
 
+import logging
 import os
 import queue
 import threading
@@ -21,10 +22,13 @@ from typing import Any
 import numba
 import numpy as np
 
-from engine.atomics import count_up, linger, new_counters, read_now, wait_for
+from engine.atomics import count_up, linger, new_counters, read_now, rest, wait_for
 from engine.jit import kernel
 
+log = logging.getLogger("tumble.threads")
+
 MOST = 64  # more do not help: stages are shorter than what it takes to meet
+MOST_WAITING = 4  # jobs for each helper: beyond that they get no processor, and would keep what is long done
 WORTH_SHARING = 256  # bodies, or pairs: of fewer, one thread is done before others have come
 
 TAKEN, DONE = 0, 1  # counters of work in parts: how many were taken, how many are done
@@ -79,8 +83,10 @@ def leave(board):
 def close(board):
     """No helper comes any more; returns when those who came have left."""
     count_up(board, CLOSED)
+    looks = 0
     while read_now(board, LEFT) < read_now(board, ENTERED):
-        pass
+        looks += 1
+        rest(looks)
 
 
 # --- the helpers -----------------------------------------------------------------------------------------------------
@@ -105,9 +111,14 @@ class _Helpers:
     def _help(self) -> None:
         while True:
             work, arguments = self.jobs.get()
-            work(*arguments)
+            try:
+                work(*arguments)
+            except Exception:
+                log.exception("a helper failed before it took a part; others do the work")
             del work, arguments  # nothing of a world is kept while waiting
-            linger(self.posted, int(self.posted[0]))
+            seen = int(self.posted[0])
+            if self.jobs.empty():
+                linger(self.posted, seen)
 
 
 _helpers = _Helpers()
@@ -119,7 +130,8 @@ def share(threads: int, work: Callable[..., Any], *arguments: Any) -> None:
     if helpers.count < threads - 1:
         helpers.grow(threads - 1)
     for _ in range(threads - 1):
-        helpers.jobs.put((work, (False, *arguments)))
+        if helpers.jobs.qsize() < MOST_WAITING * helpers.count:
+            helpers.jobs.put((work, (False, *arguments)))
     count_up_outside(helpers.posted)
     work(True, *arguments)
 

@@ -70,7 +70,8 @@ class World(Configured):
         """As many calls of step(dt), bit for bit, but without a look at Python where nothing calls for it.
 
         That makes small worlds several times as fast. ValueError and StepError as in `step`, which is told in
-        stage_times only if Python took it.
+        stage_times only if Python took it. Worlds that several threads step, and those with forces of effects, are
+        stepped one by one.
         """
         left = validate.whole("steps", steps, 0, MOST_STEPS)
         dt = self._checked(dt)
@@ -104,7 +105,7 @@ class World(Configured):
 
     @property
     def threads(self) -> int:
-        """How many threads a step may use; there are at most as many as NUMBA_NUM_THREADS says."""
+        """How many threads a step may use, 1 to 64; a world of fewer than 256 bodies is stepped by one."""
         return self._state.threads
 
     @threads.setter

@@ -8,10 +8,13 @@ from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
-from engine import EFFECTS, SHAPES, SOLVERS, Box, World
+import numpy as np
+
+from engine import EFFECTS, SHAPES, SOLVERS, Box, Circle, World
 from engine.compilation import watch_compilation
+from engine.threads import WORTH_SHARING
 from sandbox.scenes import Scene
-from sandbox.simulation import Simulation
+from sandbox.simulation import TIME_STEP, Simulation
 
 Say = Callable[[str], None]
 
@@ -54,6 +57,18 @@ def exercise(precision: str) -> None:
         state.forced = frozenset(effect.name for effect in EFFECTS if effect.name not in solver.lacks)
         state.stale = True
         simulation.step()
+    crowd = World(precision=precision, threads=2)
+    fill_to_share(crowd)
+    crowd.step(TIME_STEP)
+    crowd.threads = 1
+    crowd.run(2, TIME_STEP)
+
+
+def fill_to_share(world: World) -> None:
+    """So many that several threads share each stage: boxes and circles in rows, touching."""
+    across = np.arange(WORTH_SHARING + 2.0)
+    for shape, y in ((Box(1, 1), 0.0), (Circle(0.5), 5.0)):
+        world.create_bodies(shape, positions=np.column_stack([0.99 * across, np.full(len(across), y)]))
 
 
 def fill(world: World) -> None:

@@ -13,6 +13,7 @@ from rich.console import Console
 from rich.progress import Progress, TaskID
 
 from engine import StepError, validate
+from engine.threads import MOST as MOST_THREADS
 from sandbox.compiling import announced
 from sandbox.lab.bench import Plan, bench
 from sandbox.lab.bench_report import as_markdown, as_text
@@ -24,7 +25,6 @@ from sandbox.scenes import Scene
 from sandbox.verbs.common import BadInput, add_json, made, report, say, scene_named, whole_number
 
 NAME = "bench"
-MOST_THREADS = 256
 LONGEST = 3600.0  # to settle [s]
 
 

@@ -69,7 +69,8 @@ def add_settings(parser: argparse.ArgumentParser) -> None:
 
 def add_threads(parser: argparse.ArgumentParser) -> None:
     """--threads: how many a step may use. Unless told otherwise one core is left, to the page or to the disk."""
-    spare = max(1, (os.cpu_count() or 1) - 1)
+    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    spare = min(max(1, cores - 1), MOST_THREADS)
     parser.add_argument(
         "--threads", type=whole_number(1, MOST_THREADS), default=spare, metavar="N",
         help=f"that a step may use; default: all cores but one, here {spare}",

@@ -54,7 +54,7 @@ def run(options: argparse.Namespace) -> int:
     if options.output.exists() and not options.output.is_file():  # a folder, a device: nothing to put a file over
         raise BadInput(f"{options.output}: is no file that could be written anew")
     with interruptible():
-        rehearse(simulation.scene, say, **settings)
+        rehearse(simulation.scene, say, threads=options.threads, **settings)
     with stop_requested() as stop:
         started = time.perf_counter()
         try:

@@ -74,7 +74,7 @@ def run(options: argparse.Namespace) -> int:
     settings = chosen_settings(options)
     made(scene, settings)
     with interruptible():
-        rehearse(scene, say, **settings)
+        rehearse(scene, say, threads=options.threads, **settings)
     with stop_requested() as stop:
         session = Session(
             scene.name, open_recorder=open_recorder, record_dir=options.record_dir, threads=options.threads, **settings
