@@ -13,6 +13,7 @@ import pytest
 from engine import Box, StepError, World
 from sandbox import commands as ask
 from sandbox import session as sessions
+from sandbox import simulation as simulations
 from sandbox.scenes import SCENES, Scene
 from sandbox.session import Session
 from sandbox.simulation import Simulation
@@ -33,7 +34,8 @@ def test_rubbish_is_ignored_logged_and_told(rubbish: Any, caplog: pytest.LogCapt
     assert whole_frame(alone.frame()) == whole_frame(after)
 
 
-def test_a_command_that_cannot_be_done_changes_nothing() -> None:
+def test_a_command_that_cannot_be_done_changes_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(simulations, "MOST_BODIES", 5000)
     with running(paused=True) as (session, watcher):
         for _ in range(25):
             session.submit(ask.Spawn("box", 0.0, 9.0, count=200))
