@@ -80,7 +80,8 @@ def as_markdown(results: Sequence[BenchResult], command: str) -> str:
             cells += _peer_cells(result, name, threaded=threaded)
         rows.append(cells)
     lines = [
-        f"Made by `{command}`. Times are CPU times of whole steps, ours over theirs below 1 where ours is faster: the",
+        f"Made by `{command}`. Times are CPU times of whole steps,",
+        "ours over theirs below 1 where ours is faster: the",
         f"median and, in brackets, the quartiles over turns of {BLOCK} steps.",
         "",
         *_markdown(heads, rows),
