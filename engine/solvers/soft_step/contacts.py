@@ -79,24 +79,64 @@ def softness_of(inverse_mass1, inverse_mass2, step):
     )
 
 
+class Arms(NamedTuple):
+    """Where a contact is from the centres of mass of its two bodies, as the step began [m]."""
+
+    r1: Vec2
+    r2: Vec2
+
+
+class Speeds(NamedTuple):
+    """How two bodies move [m/s], [rad/s]."""
+
+    v1: Vec2
+    w1: Any
+    v2: Vec2
+    w2: Any
+
+
 @kernel
-def approach(v1, w1, v2, w2, r1, r2, direction):
+def arms_a(c):
+    """The arms of a constraint's first point."""
+    return Arms(Vec2(c.a_r1_x, c.a_r1_y), Vec2(c.a_r2_x, c.a_r2_y))
+
+
+@kernel
+def arms_b(c):
+    """And of its second."""
+    return Arms(Vec2(c.b_r1_x, c.b_r1_y), Vec2(c.b_r2_x, c.b_r2_y))
+
+
+@kernel
+def approach(speeds, arms, direction):
     """Speed of the contact point of body2 over that of body1, along a direction [m/s]."""
-    return dot((v2 + spin(w2, r2)) - (v1 + spin(w1, r1)), direction)
+    return dot((speeds.v2 + spin(speeds.w2, arms.r2)) - (speeds.v1 + spin(speeds.w1, arms.r1)), direction)
 
 
 @kernel
-def separation_now(d1, q1, d2, q2, r1, r2, normal, separation):
+def pushed(speeds, c, arms, push):
+    """The speeds after an impulse at a contact, on body2, and against it on body1 [N s]."""
+    return Speeds(
+        speeds.v1 - push * c.inverse_mass1,
+        speeds.w1 - c.inverse_inertia1 * cross(arms.r1, push),
+        speeds.v2 + push * c.inverse_mass2,
+        speeds.w2 + c.inverse_inertia2 * cross(arms.r2, push),
+    )
+
+
+@kernel
+def separation_now(mover1, mover2, arms, normal, separation):
     """The separation after the bodies moved since the step began [m]."""
-    return dot((d2 - d1) + (rotate(q2, r2) - rotate(q1, r1)), normal) + separation
+    turned = rotate(mover2.q, arms.r2) - rotate(mover1.q, arms.r1)
+    return dot((mover2.d - mover1.d) + turned, normal) + separation
 
 
 @kernel
-def biased_change(speed, s, mass, impulse, soft, push_out, inverse_h):
+def biased_change(speed, s, mass, impulse, soft, step):
     """The impulse to add: of the spring where shapes overlap; where they are apart, what lets them just meet [N s]."""
     zero = const(0.0, s)
     apart = s > zero
-    bias = select(apart, s * inverse_h, maximum(soft.bias_rate * s, -push_out))
+    bias = select(apart, s * step.inverse_h, maximum(soft.bias_rate * s, -step.push_out_speed))
     scale = select(apart, const(1.0, s), soft.mass_scale)
     give = select(apart, zero, soft.impulse_scale)
     total = maximum(impulse - mass * scale * (speed + bias) - give * impulse, zero)

@@ -11,7 +11,17 @@ from engine.jit import kernel
 from engine.lanes import const
 from engine.rows import at
 from engine.solvers.soft_step import friction, rolling
-from engine.solvers.soft_step.contacts import approach, biased_change, relaxed_change, separation_now, softness_of
+from engine.solvers.soft_step.contacts import (
+    Speeds,
+    approach,
+    arms_a,
+    arms_b,
+    biased_change,
+    pushed,
+    relaxed_change,
+    separation_now,
+    softness_of,
+)  # fmt: skip
 from engine.solvers.soft_step.movers import load, store
 from engine.vec2 import Vec2, cross, right_of
 
@@ -62,35 +72,25 @@ def solve_biased(first, last, constraints, movers, step):
     """One pass over the normal parts, with bias."""
     for k in range(first, last):
         c = at(constraints, k)
-        a = load(movers, c.body1)
-        b = load(movers, c.body2)
+        m1 = load(movers, c.body1)
+        m2 = load(movers, c.body2)
         normal = Vec2(c.nx, c.ny)
-        v1, w1, v2, w2 = a.v, a.w, b.v, b.w
+        speeds = Speeds(m1.v, m1.w, m2.v, m2.w)
         soft = softness_of(c.inverse_mass1, c.inverse_mass2, step)
 
-        r1, r2 = Vec2(c.a_r1_x, c.a_r1_y), Vec2(c.a_r2_x, c.a_r2_y)
-        s = separation_now(a.d, a.q, b.d, b.q, r1, r2, normal, c.a_separation)
-        speed = approach(v1, w1, v2, w2, r1, r2, normal)
-        change = biased_change(
-            speed, s, c.a_mass, c.a_impulse, soft, step.push_out_speed, step.inverse_h
-        )  # fmt: skip
+        arms = arms_a(c)
+        s = separation_now(m1, m2, arms, normal, c.a_separation)
+        change = biased_change(approach(speeds, arms, normal), s, c.a_mass, c.a_impulse, soft, step)
         c.a_impulse += change
-        push = normal * change
-        v1, w1 = v1 - push * c.inverse_mass1, w1 - c.inverse_inertia1 * cross(r1, push)
-        v2, w2 = v2 + push * c.inverse_mass2, w2 + c.inverse_inertia2 * cross(r2, push)
+        speeds = pushed(speeds, c, arms, normal * change)
 
-        r1, r2 = Vec2(c.b_r1_x, c.b_r1_y), Vec2(c.b_r2_x, c.b_r2_y)
-        s = separation_now(a.d, a.q, b.d, b.q, r1, r2, normal, c.b_separation)
-        speed = approach(v1, w1, v2, w2, r1, r2, normal)
-        change = biased_change(
-            speed, s, c.b_mass, c.b_impulse, soft, step.push_out_speed, step.inverse_h
-        )  # fmt: skip
+        arms = arms_b(c)
+        s = separation_now(m1, m2, arms, normal, c.b_separation)
+        change = biased_change(approach(speeds, arms, normal), s, c.b_mass, c.b_impulse, soft, step)
         c.b_impulse += change
-        push = normal * change
-        v1, w1 = v1 - push * c.inverse_mass1, w1 - c.inverse_inertia1 * cross(r1, push)
-        v2, w2 = v2 + push * c.inverse_mass2, w2 + c.inverse_inertia2 * cross(r2, push)
-        store(movers, c.body1, v1, w1, a.turned)
-        store(movers, c.body2, v2, w2, b.turned)
+        speeds = pushed(speeds, c, arms, normal * change)
+        store(movers, c.body1, speeds.v1, speeds.w1, m1.turned)
+        store(movers, c.body2, speeds.v2, speeds.w2, m2.turned)
 
 
 @kernel
@@ -101,60 +101,60 @@ def relax(first, last, constraints, frictions, belts, rollings, movers, kept, st
     """
     for k in range(first, last):
         c = at(constraints, k)
-        a = load(movers, c.body1)
-        b = load(movers, c.body2)
-        normal = Vec2(c.nx, c.ny)
-        v1, w1, v2, w2 = a.v, a.w, b.v, b.w
-        im1, im2 = c.inverse_mass1, c.inverse_mass2
-        ii1, ii2 = c.inverse_inertia1, c.inverse_inertia2
-        ra1, ra2 = Vec2(c.a_r1_x, c.a_r1_y), Vec2(c.a_r2_x, c.a_r2_y)
-        rb1, rb2 = Vec2(c.b_r1_x, c.b_r1_y), Vec2(c.b_r2_x, c.b_r2_y)
-
-        s = separation_now(a.d, a.q, b.d, b.q, ra1, ra2, normal, c.a_separation)
-        change = relaxed_change(approach(v1, w1, v2, w2, ra1, ra2, normal), s, c.a_mass, c.a_impulse, step.inverse_h)
-        c.a_impulse += change
-        c.a_given += kept * c.a_impulse
-        push = normal * change
-        v1, w1 = v1 - push * im1, w1 - ii1 * cross(ra1, push)
-        v2, w2 = v2 + push * im2, w2 + ii2 * cross(ra2, push)
-
-        s = separation_now(a.d, a.q, b.d, b.q, rb1, rb2, normal, c.b_separation)
-        change = relaxed_change(approach(v1, w1, v2, w2, rb1, rb2, normal), s, c.b_mass, c.b_impulse, step.inverse_h)
-        c.b_impulse += change
-        c.b_given += kept * c.b_impulse
-        push = normal * change
-        v1, w1 = v1 - push * im1, w1 - ii1 * cross(rb1, push)
-        v2, w2 = v2 + push * im2, w2 + ii2 * cross(rb2, push)
-
+        m1 = load(movers, c.body1)
+        m2 = load(movers, c.body2)
+        speeds = relax_normal(c, m1, m2, kept, step)
         if frictions is not None:
-            f = at(frictions, k)
-            tangent = right_of(normal)
-            speed = approach(v1, w1, v2, w2, ra1, ra2, tangent)
-            if belts is not None:
-                speed = speed - at(belts, k).speed
-            change = friction.change(speed, f.a_mass, f.a_impulse, f.friction * c.a_impulse)
-            f.a_impulse += change
-            f.a_given += kept * f.a_impulse
-            push = tangent * change
-            v1, w1 = v1 - push * im1, w1 - ii1 * cross(ra1, push)
-            v2, w2 = v2 + push * im2, w2 + ii2 * cross(ra2, push)
-
-            speed = approach(v1, w1, v2, w2, rb1, rb2, tangent)
-            if belts is not None:
-                speed = speed - at(belts, k).speed
-            change = friction.change(speed, f.b_mass, f.b_impulse, f.friction * c.b_impulse)
-            f.b_impulse += change
-            f.b_given += kept * f.b_impulse
-            push = tangent * change
-            v1, w1 = v1 - push * im1, w1 - ii1 * cross(rb1, push)
-            v2, w2 = v2 + push * im2, w2 + ii2 * cross(rb2, push)
-
+            speeds = rub(c, at(frictions, k), belts, k, speeds, kept)
+        w1, w2 = speeds.w1, speeds.w2
         if rollings is not None:
             r = at(rollings, k)
             turn = rolling.change(w2 - w1, r.mass, r.impulse, r.reach * (c.a_impulse + c.b_impulse))
             r.impulse += turn
-            w1 = w1 - ii1 * turn
-            w2 = w2 + ii2 * turn
+            w1 = w1 - c.inverse_inertia1 * turn
+            w2 = w2 + c.inverse_inertia2 * turn
+        store(movers, c.body1, speeds.v1, w1, m1.turned)
+        store(movers, c.body2, speeds.v2, w2, m2.turned)
 
-        store(movers, c.body1, v1, w1, a.turned)
-        store(movers, c.body2, v2, w2, b.turned)
+
+@kernel
+def relax_normal(c, m1, m2, kept, step):
+    """The normal part of it. Returns the speeds after."""
+    normal = Vec2(c.nx, c.ny)
+    speeds = Speeds(m1.v, m1.w, m2.v, m2.w)
+    arms = arms_a(c)
+    s = separation_now(m1, m2, arms, normal, c.a_separation)
+    change = relaxed_change(approach(speeds, arms, normal), s, c.a_mass, c.a_impulse, step.inverse_h)
+    c.a_impulse += change
+    c.a_given += kept * c.a_impulse
+    speeds = pushed(speeds, c, arms, normal * change)
+
+    arms = arms_b(c)
+    s = separation_now(m1, m2, arms, normal, c.b_separation)
+    change = relaxed_change(approach(speeds, arms, normal), s, c.b_mass, c.b_impulse, step.inverse_h)
+    c.b_impulse += change
+    c.b_given += kept * c.b_impulse
+    return pushed(speeds, c, arms, normal * change)
+
+
+@kernel
+def rub(c, f, belts, k, speeds, kept):
+    """The sideways part. belts: None where no surface runs. Returns the speeds after."""
+    tangent = right_of(Vec2(c.nx, c.ny))
+    arms = arms_a(c)
+    speed = approach(speeds, arms, tangent)
+    if belts is not None:
+        speed = speed - at(belts, k).speed
+    change = friction.change(speed, f.a_mass, f.a_impulse, f.friction * c.a_impulse)
+    f.a_impulse += change
+    f.a_given += kept * f.a_impulse
+    speeds = pushed(speeds, c, arms, tangent * change)
+
+    arms = arms_b(c)
+    speed = approach(speeds, arms, tangent)
+    if belts is not None:
+        speed = speed - at(belts, k).speed
+    change = friction.change(speed, f.b_mass, f.b_impulse, f.friction * c.b_impulse)
+    f.b_impulse += change
+    f.b_given += kept * f.b_impulse
+    return pushed(speeds, c, arms, tangent * change)

@@ -6,9 +6,9 @@ from engine.jit import kernel
 from engine.lanes import const, holds_somewhere, maximum, select
 from engine.mixing import mix
 from engine.rows import at, numbers_at, pick
-from engine.solvers.soft_step.contacts import approach
+from engine.solvers.soft_step.contacts import Speeds, approach, arms_a, arms_b, pushed
 from engine.solvers.soft_step.movers import load, store
-from engine.vec2 import Vec2, cross
+from engine.vec2 import Vec2
 
 VISITS = 8
 """Of the two points of a pair. One only: a box that falls flat tumbles, and a capsule jumps higher than it fell. With
@@ -26,9 +26,9 @@ def prepare(first, last, slots, constraints, arbiters, coefficients, rule, motio
         row.restitution = const(mixed, c.nx)
         m1 = at(motions, c.body1)
         m2 = at(motions, c.body2)
-        v1, w1, v2, w2, normal = Vec2(m1.vx, m1.vy), m1.w, Vec2(m2.vx, m2.vy), m2.w, Vec2(c.nx, c.ny)
-        row.a_speed = approach(v1, w1, v2, w2, Vec2(c.a_r1_x, c.a_r1_y), Vec2(c.a_r2_x, c.a_r2_y), normal)
-        row.b_speed = approach(v1, w1, v2, w2, Vec2(c.b_r1_x, c.b_r1_y), Vec2(c.b_r2_x, c.b_r2_y), normal)
+        speeds, normal = Speeds(Vec2(m1.vx, m1.vy), m1.w, Vec2(m2.vx, m2.vy), m2.w), Vec2(c.nx, c.ny)
+        row.a_speed = approach(speeds, arms_a(c), normal)
+        row.b_speed = approach(speeds, arms_b(c), normal)
 
 
 @kernel
@@ -59,25 +59,16 @@ def apply(first, last, constraints, bounces, movers, step):
             continue
         m1 = load(movers, c.body1)
         m2 = load(movers, c.body2)
-        normal = Vec2(c.nx, c.ny)
-        v1, w1, v2, w2 = m1.v, m1.w, m2.v, m2.w
-        im1, ii1, im2, ii2 = c.inverse_mass1, c.inverse_inertia1, c.inverse_mass2, c.inverse_inertia2
-        ra1, ra2 = Vec2(c.a_r1_x, c.a_r1_y), Vec2(c.a_r2_x, c.a_r2_y)
-        rb1, rb2 = Vec2(c.b_r1_x, c.b_r1_y), Vec2(c.b_r2_x, c.b_r2_y)
+        normal, first_arms, second_arms = Vec2(c.nx, c.ny), arms_a(c), arms_b(c)
+        speeds = Speeds(m1.v, m1.w, m2.v, m2.w)
         for _ in range(VISITS):
-            speed = approach(v1, w1, v2, w2, ra1, ra2, normal)
-            more = change(bounces_a, speed, row.a_speed, e, c.a_mass, c.a_impulse)
+            more = change(bounces_a, approach(speeds, first_arms, normal), row.a_speed, e, c.a_mass, c.a_impulse)
             c.a_impulse += more
             c.a_given += more
-            push = normal * more
-            v1, w1 = v1 - push * im1, w1 - ii1 * cross(ra1, push)
-            v2, w2 = v2 + push * im2, w2 + ii2 * cross(ra2, push)
-            speed = approach(v1, w1, v2, w2, rb1, rb2, normal)
-            more = change(bounces_b, speed, row.b_speed, e, c.b_mass, c.b_impulse)
+            speeds = pushed(speeds, c, first_arms, normal * more)
+            more = change(bounces_b, approach(speeds, second_arms, normal), row.b_speed, e, c.b_mass, c.b_impulse)
             c.b_impulse += more
             c.b_given += more
-            push = normal * more
-            v1, w1 = v1 - push * im1, w1 - ii1 * cross(rb1, push)
-            v2, w2 = v2 + push * im2, w2 + ii2 * cross(rb2, push)
-        store(movers, c.body1, v1, w1, m1.turned)
-        store(movers, c.body2, v2, w2, m2.turned)
+            speeds = pushed(speeds, c, second_arms, normal * more)
+        store(movers, c.body1, speeds.v1, speeds.w1, m1.turned)
+        store(movers, c.body2, speeds.v2, speeds.w2, m2.turned)
