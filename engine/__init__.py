@@ -6,7 +6,17 @@ from engine.diagnostics import Diagnostics
 from engine.effects import EFFECTS, EffectStatus
 from engine.effects.fluid import Fluid
 from engine.errors import StepError
-from engine.joints.handle import RevoluteJoint
+from engine.joints import (
+    DistanceJoint,
+    FilterJoint,
+    Joint,
+    MotorJoint,
+    MouseJoint,
+    PrismaticJoint,
+    RevoluteJoint,
+    WeldJoint,
+    WheelJoint,
+)
 from engine.records import Arbiter, Contact
 from engine.settings import Settings
 from engine.shape_handle import ShapeHandle
@@ -14,7 +24,7 @@ from engine.shapes import SHAPE_KINDS, SHAPES, Box, Capsule, Chain, Circle, Poly
 from engine.snapshot import Snapshot
 from engine.solvers import SOLVERS
 from engine.stages import STAGES
-from engine.tables import BODY_KINDS, CONTACT_RECORD, JOINT_RECORD
+from engine.tables import BODY_KINDS, CONTACT_RECORD, JOINT_KINDS, JOINT_RECORD
 from engine.vec2 import Vec2
 from engine.world import World
 
@@ -23,6 +33,7 @@ __all__ = [
     "BROAD_PHASES",
     "CONTACT_RECORD",
     "EFFECTS",
+    "JOINT_KINDS",
     "JOINT_RECORD",
     "SHAPES",
     "SHAPE_KINDS",
@@ -36,9 +47,15 @@ __all__ = [
     "Circle",
     "Contact",
     "Diagnostics",
+    "DistanceJoint",
     "EffectStatus",
+    "FilterJoint",
     "Fluid",
+    "Joint",
+    "MotorJoint",
+    "MouseJoint",
     "Polygon",
+    "PrismaticJoint",
     "RevoluteJoint",
     "Segment",
     "Settings",
@@ -47,5 +64,7 @@ __all__ = [
     "Snapshot",
     "StepError",
     "Vec2",
+    "WeldJoint",
+    "WheelJoint",
     "World",
 ]

@@ -44,6 +44,7 @@ class Configured:
     push_out_speed = Setting[float]()
     joint_hertz = Setting[float]()
     joint_damping_ratio = Setting[float]()
+    joint_solving = Setting[str]()
     restitution_threshold = Setting[float]()
     speculative_distance = Setting[float]()
     recycling = Setting[bool]()

@@ -11,13 +11,12 @@ from engine.blueprint import Blueprint
 from engine.bodies import Body, Pair
 from engine.effects import BODY_PROPERTIES, SHAPE_PROPERTIES
 from engine.integrate import place_rows
-from engine.joints.handle import RevoluteJoint, checked_motor
 from engine.properties import check
 from engine.shape_handle import ShapeHandle
 from engine.shapes import Shape
 from engine.tables import BODY_KINDS, DYNAMIC
 from engine.trigonometry import cos_sin
-from engine.vec2 import Vec2, unrotate
+from engine.vec2 import Vec2
 from engine.weights import check_range, check_weight, placed_part, reweigh, together, weigh, weights_of
 
 if TYPE_CHECKING:
@@ -109,62 +108,6 @@ def check_more_weight(state: State, row: int, blueprint: Blueprint, precision: s
     mass, center, inertia = together(parts)
     validate.in_range(precision, offset=center)
     check_range(mass, inertia, precision)
-
-
-def add_revolute(
-    world: World,
-    body1: Body,
-    body2: Body,
-    anchor: Pair,
-    softness: float,
-    bias_factor: float | None,
-    collide_connected: bool,
-    motor_speed: float | None,
-    max_motor_torque: float,
-) -> RevoluteJoint:
-    """Checks everything, then writes the joint's row: World.create_joint_revolute says what the arguments mean."""
-    for name, body in (("body1", body1), ("body2", body2)):
-        check_body(world, name, body)
-    if body1 == body2:
-        raise validate.refuse("body2", body2, "another body than body1")
-    if body1.kind != "dynamic" and body2.kind != "dynamic":
-        raise validate.refuse("body2", body2, f"dynamic where body1 is {body1.kind}")
-    x, y = validate.vector("anchor", anchor)
-    softness = validate.non_negative("softness", softness)
-    validate.in_range(world.precision, softness=(softness,))
-    bias = -1.0 if bias_factor is None else validate.between("bias_factor", bias_factor, 0.0, 1.0)
-    collide_connected = validate.switch("collide_connected", collide_connected)
-    motor = checked_motor(world.precision, motor_speed, max_motor_torque)
-
-    values: dict[str, Any] = {
-        "body1": body1._row,
-        "body2": body2._row,
-        "softness": softness,
-        "bias_factor": bias,
-        "collide_connected": collide_connected,
-    }
-    for number, body in ((1, body1), (2, body2)):
-        c, s = cos_sin(body.angle)
-        local = unrotate(Vec2(c, s), Vec2(x, y) - body.position)
-        values[f"anchor{number}_x"], values[f"anchor{number}_y"] = local
-    storage = world._state.joints
-    row = storage.add()
-    for name, value in values.items():
-        storage.tables["joints"][name][row] = value
-    for name, value in motor.items():
-        storage.put(name, row, value)
-    return RevoluteJoint(world, row, int(storage.tables["joints"]["serial"][row]))
-
-
-def check_body(world: World, name: str, body: Any) -> Body:
-    """A living body of this world."""
-    if not isinstance(body, Body):
-        raise validate.refuse(name, body, "a body of this world")
-    if body.world is not world:
-        raise validate.refuse(name, body, "a body of this world, not of another")
-    if not body.alive:
-        raise validate.refuse(name, body, "a living body, this one was destroyed")
-    return body
 
 
 def checked_positions(value: Any) -> np.ndarray:

@@ -8,7 +8,7 @@ import numpy as np
 
 from engine.jit import kernel
 from engine.state import State
-from engine.tables import CONTACT_RECORD, JOINT_RECORD, empty
+from engine.tables import ALONG_WAY, CONTACT_RECORD, JOINT_RECORD, POINT, empty
 from engine.vec2 import Vec2
 
 if TYPE_CHECKING:
@@ -76,12 +76,14 @@ def contact_records(state: State) -> np.ndarray:
     return np.array(records[:total], copy=True)
 
 
-def joint_records(state: State) -> np.ndarray:
-    """(J,) JOINT_RECORD: all joints in the order of creation, anchors where the bodies are now."""
+def joint_records(state: State, rows: np.ndarray | None = None) -> np.ndarray:
+    """(J,) JOINT_RECORD: joints in the order of creation, or those in `rows`, anchors where the bodies are now."""
     bodies, motions = state.bodies.tables["bodies"], state.bodies.tables["motions"]
-    joints = state.joints.tables["joints"][state.joints.order]
+    order = state.joints.order if rows is None else rows
+    joints = state.joints.tables["joints"][order]
     records = np.zeros(len(joints), JOINT_RECORD)
     records["joint"] = joints["serial"]
+    records["kind"] = joints["kind"]
     for number in ("1", "2"):
         rows = joints["body" + number]
         body, c, s = bodies[rows], motions["cosine"][rows], motions["sine"][rows]
@@ -89,9 +91,35 @@ def joint_records(state: State) -> np.ndarray:
         records["body" + number] = body["serial"]
         records["x" + number] = body["x"] + (c * x - s * y)
         records["y" + number] = body["y"] + (s * x + c * y)
-    records["impulse_x"] = joints["given_x"]
-    records["impulse_y"] = joints["given_y"]
+    x, y, turn = joint_impulses(state, order, joints, records)
+    records["impulse_x"], records["impulse_y"], records["turn_impulse"] = x, y, turn
     return records
+
+
+def joint_impulses(
+    state: State, order: np.ndarray, joints: np.ndarray, records: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """What the last step gave body2 of each joint: x and y [N s], and what turned it [N m s].
+
+    Along and across axes as they are now, at the end of the step.
+    """
+    lines = joints["held"] > POINT
+    held_x, held_y = joints["given_x"].astype(np.float64), joints["given_y"].astype(np.float64)
+    turns, slides = (state.joints.tables[name][order] for name in ("turns", "slides"))
+    turn, slide = (
+        (part["spring_given"] + part["motor_given"] + part["lower_given"] - part["upper_given"]).astype(np.float64)
+        for part in (turns, slides)
+    )
+    motions = state.bodies.tables["motions"][joints["body1"]]
+    axis_x = motions["cosine"] * joints["axis_x"] - motions["sine"] * joints["axis_y"]
+    axis_y = motions["sine"] * joints["axis_x"] + motions["cosine"] * joints["axis_y"]
+    way_x, way_y = records["x2"] - records["x1"], records["y2"] - records["y1"]
+    length = np.maximum(np.hypot(way_x, way_y), 1e-300)
+    by_way = slides["along"] == ALONG_WAY
+    along_x, along_y = np.where(by_way, way_x / length, axis_x), np.where(by_way, way_y / length, axis_y)
+    x = np.where(lines, -axis_y * held_x, held_x) + along_x * slide
+    y = np.where(lines, axis_x * held_x, held_y) + along_y * slide
+    return x, y, turn + np.where(lines, held_y, 0.0)
 
 
 def arbiter_list(world: World) -> list[Arbiter]:

@@ -98,6 +98,9 @@ class Settings:
         constants.JOINT_HERTZ, 5.0, 240.0, 1.0, "Hz", "of joints, where the stiffness is fixed", SOFT
     )
     joint_damping_ratio: float = number(constants.JOINT_DAMPING_RATIO, 0.0, 20.0, 0.1, "", "of joints", SOFT)
+    joint_solving: str = choice(
+        "auto", ("auto", "iterated", "direct"), "chains that would stretch are solved at once; or none, or all", SOFT
+    )
     restitution_threshold: float = number(
         constants.RESTITUTION_THRESHOLD, 0.0, 10.0, 0.1, "m/s", "below it nothing bounces", SOFT
     )

@@ -12,8 +12,9 @@ import numpy as np
 
 from engine.settings import Settings
 from engine.state import State
+from engine.tables import ALONG_NOTHING
 
-MAGIC = b"tumble snapshot 2\n"
+MAGIC = b"tumble snapshot 3\n"
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,7 +53,7 @@ def state_hash(state: State) -> str:
     """64 hex digits over what physics means; equal for equal futures, whatever the capacity, padding or serials.
 
     In the order of creation: bodies' position, angle, velocity and sleep state, then the accumulated impulses of
-    contacts, of joints and of their motors, with their keys. -0.0 counts as 0.0.
+    contacts and of joints, with their keys. -0.0 counts as 0.0.
     """
     order = state.bodies.order
     bodies = state.bodies.tables["bodies"][order]
@@ -87,13 +88,9 @@ def state_hash(state: State) -> str:
         add(np.searchsorted(serials, state.bodies.tables["bodies"]["serial"][joints[name]]), "<i8")
     for name in ("impulse_x", "impulse_y"):
         add(joints[name], "<f8")
-    if state.joints.departing("motored"):
-        add(state.joints.ensure("motor_impulse")[state.joints.order], "<f8")
+    for part in ("turns", "slides"):
+        rows = state.joints.tables[part][state.joints.order]
+        rows = rows[rows["along"] != ALONG_NOTHING]  # so that joints without any are hashed as they always were
+        for name in ("spring_impulse", "motor_impulse", "lower_impulse", "upper_impulse"):
+            add(rows[name], "<f8")
     return digest.hexdigest()
-
-
-def carried_contacts(state: State) -> np.ndarray:
-    """(C,) contacts as the next step finds them; contact_records, in the same order, tells what the last one gave."""
-    table = state.arbiters
-    held = np.arange(2) < table.rows["count"][: table.count, None]
-    return np.asarray(table.contacts[: table.count])[held]

@@ -19,7 +19,7 @@ from engine.shapes.circle import CIRCLE
 from engine.shapes.polygon import POLYGON
 from engine.shapes.segment import SEGMENT
 from engine.state import State
-from engine.tables import BODY_KINDS, HULL_POINTS
+from engine.tables import BODY_KINDS, HELD, HULL_POINTS, JOINT_KINDS
 
 MAY_BE_INFINITE = ("mass", "inertia")  # of static bodies
 SIZES = {  # what a shape cannot be without
@@ -142,15 +142,27 @@ def check_parts(living: np.ndarray) -> None:
 
 
 def check_joints(tables: Mapping[str, np.ndarray]) -> None:
-    """Joints have serials of their own and two living bodies; motors are there or not, and of no negative torque."""
+    """Joints have serials of their own, two living bodies, and parts that belong to their kind."""
     check_serials("joints", "joints", tables)
     joints = tables["joints.joints"]
-    joints = joints[joints["serial"] >= 0]
+    living = joints["serial"] >= 0
+    for name in ("turns", "slides"):
+        if len(tables[f"joints.{name}"]) != len(joints):
+            raise refuse(f"joints.{name}", "as long as joints.joints")
+    joints = joints[living]
     check_rows("joints.joints", tables, joints["body1"], joints["body2"])
-    if not np.isin(tables.get("joints.motored", 0), (0, 1)).all():
-        raise refuse("joints.motored", "of 0 and 1")
-    if np.any(np.asarray(tables.get("joints.max_motor_torque", 0)) < 0):
-        raise refuse("joints.max_motor_torque", "of no negative torque")
+    check_choices("joints.joints", joints, kind=len(JOINT_KINDS), held=len(HELD), collide_connected=2)
+    for name in ("softness", "hertz", "damping_ratio"):
+        if (joints[name] < 0).any():
+            raise refuse("joints.joints", f"of no negative {name}")
+    for name in ("turns", "slides"):
+        part = tables[f"joints.{name}"][living]
+        check_choices(f"joints.{name}", part, along=3, spring=3, motored=2, limited=2)
+        if (part["lower"] > part["upper"]).any():
+            raise refuse(f"joints.{name}", "of limits, lower before upper")
+        for field in ("hertz", "damping_ratio", "max_motor"):
+            if (part[field] < 0).any():
+                raise refuse(f"joints.{name}", f"of no negative {field}")
 
 
 def check_fluids(tables: Mapping[str, np.ndarray]) -> None:

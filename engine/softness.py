@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from engine.constants import CONTACT_HERTZ, CONTACT_SUBSTEPS_A_CYCLE, JOINT_SUBSTEPS_A_CYCLE, STATIC_STIFFENING
-from engine.settings import Settings
+from engine.jit import kernel
+from engine.lanes import const, over, select
+
+if TYPE_CHECKING:
+    from engine.settings import Settings
 
 
 class Softness(NamedTuple):
@@ -18,9 +22,9 @@ class Softness(NamedTuple):
     and "Solver2D" (box2d.org, 2024).
     """
 
-    bias_rate: float  # [1/s]
-    mass_scale: float
-    impulse_scale: float
+    bias_rate: Any  # [1/s]
+    mass_scale: Any
+    impulse_scale: Any
 
 
 RIGID = Softness(0.0, 1.0, 0.0)
@@ -70,3 +74,16 @@ def stiffness(settings: Settings, dt: float) -> Stiffness:
         contact,
         joint,
     )
+
+
+@kernel
+def soft_lanes(hertz, damping_ratio, h):
+    """The same in lanes, for springs that each have a frequency of their own; rigid where that is 0."""
+    omega = hertz * const(2.0 * math.pi, hertz)
+    step = const(h, hertz)
+    one = const(1.0, hertz)
+    a1 = const(2.0, hertz) * damping_ratio + step * omega
+    a2 = step * omega * a1
+    a3 = one / (one + a2)
+    there = hertz > const(0.0, hertz)
+    return Softness(over(omega, a1), select(there, a2 * a3, one), select(there, a3, const(0.0, hertz)))

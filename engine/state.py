@@ -8,10 +8,10 @@ import numpy as np
 
 from engine.arbiters import ArbiterTable, follow_pairs, indices_by_collider, mix_friction
 from engine.broad_phase import BROAD_PHASES
-from engine.colouring import Layout, any_change, colour_joints, give_colours
+from engine.colouring import Layout, any_change, give_colours
 from engine.effects import BODY_PROPERTIES, EFFECTS, SHAPE_PROPERTIES
 from engine.effects.filters import drop_filtered
-from engine.effects.motors import MOTOR_COLUMNS
+from engine.joints.layout import JointLayout, joins
 from engine.mixing import RULES
 from engine.narrow_phase import COLLIDER_OF, COLLIDERS, TALK_COLLIDERS
 from engine.narrow_phase.recycling import BOX
@@ -30,9 +30,10 @@ from engine.tables import (
     KINEMATIC,
     SHAPE,
     empty,
+    free_dtype,
+    joint_dtype,
     motion_dtype,
     placement_dtype,
-    revolute_dtype,
     step_dtype,
 )
 
@@ -48,7 +49,8 @@ class State:
         self.bodies = Storage({"bodies": BODY, "motions": motion_dtype(precision)}, body_columns)
         self.shapes = Storage({"shapes": SHAPE}, shape_columns)
         self.hulls = Storage({"hulls": HULL})
-        self.joints = Storage({"joints": revolute_dtype(precision)}, MOTOR_COLUMNS)
+        free = free_dtype(precision)
+        self.joints = Storage({"joints": joint_dtype(precision), "turns": free, "slides": free})
         self.fluids = Storage({"fluids": FLUID})
         self.arbiters = ArbiterTable(precision, 0)
         self.spare_arbiters = ArbiterTable(precision, 0)  # where the next change of pairs is written
@@ -63,7 +65,8 @@ class State:
         self.gathered: dict[str, Any] = {}  # what effects read off the content, until it changes
         self.diagnosed_at: int | None = None  # step count when somebody asked for diagnostics
         self.layout = Layout()  # touching arbiters by colour
-        self.joint_layout = Layout()
+        self.joint_layout = JointLayout()
+        self.chains: Any = None  # joints that are solved at once
         self.solve_plan: Any = None  # what the solver reads off content and colours, until either changes
         self.addresses: dict[Any, int] = {}  # of compiled kernels, see run.py; until content changes
         self.repetition: Any = None  # what steps in a row read off all that, see run.py
@@ -89,7 +92,7 @@ class State:
 
     def refresh(self, settings: Settings) -> None:
         """Reads off the content what the stages need: which effects, which shapes, who moves, who ignores whom."""
-        for storage in (self.bodies, self.shapes, self.joints):
+        for storage in (self.bodies, self.shapes):
             storage.drop_idle_columns()
         self.effects = self.active(settings)
         self.gathered = {}
@@ -103,9 +106,9 @@ class State:
         self._refresh_bodies()
         self._refresh_shapes(settings)
         self._refresh_pairs(settings)
-        joined = "revolute joints" in self.effects
-        self.active_joints = self.joints.tables["joints"] if joined else None
-        self._refresh_joints()
+        self.active_joints = self.joints.tables["joints"] if joins(self.effects) else None
+        self.chains = SOLVERS[settings.solver].find_chains(self, settings) if self.active_joints is not None else None
+        self.joint_layout.arrange(self)
         self.forces = [e.apply for e in EFFECTS if e.apply is not None and e.name in self.effects]
         self.stale = False
 
@@ -158,18 +161,6 @@ class State:
         self.colliders = TALK_COLLIDERS if talk else COLLIDERS
         self.joined = self._joined_pairs() if "joined without colliding" in self.effects else None
         self.pairs_are_stale = self.friction_is_stale = True
-
-    def _refresh_joints(self) -> None:
-        """Which joints can be solved side by side."""
-        joints, order = self.joints.tables["joints"], self.joints.order
-        nobody = len(self.bodies.tables["bodies"]) - 1
-        joints["body1"][-1] = joints["body2"][-1] = nobody
-        colours = np.empty(len(order), np.int32)
-        taken = np.zeros(nobody + 1, np.int64)
-        colour_joints(joints, order, self.bodies.tables["motions"], taken, colours)
-        self.joint_layout.arrange(colours, self.lanes, -1)
-        rows = np.append(order, len(joints) - 1)  # -1, nothing, is the last
-        self.joint_slots = rows[self.joint_layout.slots].astype(np.int32)
 
     def _joined_pairs(self) -> np.ndarray:
         """(P, 2) int64 serials of bodies joined without colliding, ascending."""

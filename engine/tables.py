@@ -103,6 +103,9 @@ CONTACT_RECORD = np.dtype(
 )
 """A contact as the outside sees it: a copy, one row a contact, in the solver's order."""
 
+JOINT_KINDS = ("revolute", "distance", "prismatic", "weld", "wheel", "motor", "mouse", "filter")
+REVOLUTE, DISTANCE, PRISMATIC, WELD, WHEEL, MOTOR, MOUSE, FILTER = range(8)
+
 JOINT_RECORD = np.dtype(
     [
         ("joint", np.int64),  # serial of the joint
@@ -112,8 +115,10 @@ JOINT_RECORD = np.dtype(
         ("y1", np.float64),
         ("x2", np.float64),  # anchor on body2, in the world [m]
         ("y2", np.float64),
-        ("impulse_x", np.float64),  # accumulated, on body2 [N s]
+        ("impulse_x", np.float64),  # what the last step gave body2 at its anchor [N s]
         ("impulse_y", np.float64),
+        ("turn_impulse", np.float64),  # and to turn it [N m s]
+        ("kind", np.int64),  # index into JOINT_KINDS
     ]
 )
 """A joint as the outside sees it: a copy, one row a joint, in the order of creation."""
@@ -211,37 +216,92 @@ def contact_dtype(precision: str) -> np.dtype:
     )
 
 
+NEVER = -1.0
+"""A largest force or torque that is not there: any is taken."""
+
+HELD = ("nothing", "point", "line", "across")
+NOTHING, POINT, LINE, ACROSS = range(4)
+"""What a joint takes away from how its bodies move: nothing; the way between two points; the way across an axis and
+the turning; the way across an axis alone."""
+
+
 @cache
-def revolute_dtype(precision: str) -> np.dtype:
-    """A revolute joint: a point of body1 and a point of body2 stay together."""
+def joint_dtype(precision: str) -> np.dtype:
+    """A joint of any kind, and what it holds. What it leaves free has rows of their own, see `free_dtype`."""
     real = REALS[precision]
     return np.dtype(
         [
             ("serial", np.int64),  # number of creation among the joints; -1: no joint in this row
+            ("kind", np.int64),  # index into JOINT_KINDS
+            ("held", np.int64),  # index into HELD
             ("body1", np.int64),  # rows of the bodies
             ("body2", np.int64),
             ("anchor1_x", np.float64),  # anchor in the frame of body1 [m]
             ("anchor1_y", np.float64),
             ("anchor2_x", np.float64),  # anchor in the frame of body2 [m]
             ("anchor2_y", np.float64),
+            ("axis_x", np.float64),  # unit axis in the frame of body1, of those that slide
+            ("axis_y", np.float64),
+            ("reference_angle", np.float64),  # of body2 over body1, where the joint's own angle is 0 [rad]
+            ("hertz", np.float64),  # of the spring that holds the point; 0: as stiff as joints are [1/s]
+            ("damping_ratio", np.float64),
+            ("max_force", np.float64),  # that holds the point [N]; NEVER
+            ("break_force", np.float64),  # beyond which it breaks [N]; NEVER
+            ("break_torque", np.float64),  # [N m]; NEVER
             ("softness", real),  # how far it gives way [1/kg]: 0 is rigid
             ("bias_factor", real),  # part of the separation that a step removes; < 0: the solver's own
             ("collide_connected", np.int64),  # 1: its bodies collide with each other
-            ("r1_x", real),  # anchors relative to the centres, turned into the world [m]
+            ("r1_x", real),  # sequential_impulses: anchors relative to the centres, turned into the world [m]
             ("r1_y", real),
             ("r2_x", real),
             ("r2_y", real),
-            ("mass_xx", real),  # effective mass, a symmetric matrix [kg]
+            ("mass_xx", real),  # and effective mass, a symmetric matrix [kg]
             ("mass_xy", real),
             ("mass_yy", real),
-            ("bias_x", real),  # sequential_impulses: velocity that removes the separation [m/s]
+            ("bias_x", real),  # and velocity that removes the separation [m/s]
             ("bias_y", real),
-            ("impulse_x", real),  # accumulated, on body2 [N s]
-            ("impulse_y", real),
-            ("given_x", real),  # what the last step gave body2 [N s]
+            ("impulse_x", real),  # accumulated, on body2 [N s]; of a line: across it [N s]
+            ("impulse_y", real),  # of a line: turning [N m s]
+            ("given_x", real),  # what the last step gave body2, likewise
             ("given_y", real),
         ]
     )
+
+
+ALONG_NOTHING, ALONG_AXIS, ALONG_WAY = range(3)
+"""What a joint's slide is along: there is none; its axis; the way from anchor to anchor."""
+
+NO_SPRING, SPRING, STIFF = range(3)
+
+
+@cache
+def free_dtype(precision: str) -> np.dtype:
+    """What acts in a direction that a joint leaves free: how its bodies turn, or slide, against each other.
+
+    Units of a slide; those of a turn are rad for m, N m for N.
+    """
+    real = REALS[precision]
+    return np.dtype(
+        [
+            ("along", np.int64),  # of slides: ALONG_..., of turns: 1 if anything acts
+            ("spring", np.int64),  # NO_SPRING, SPRING or STIFF, which is as stiff as joints are
+            ("hertz", np.float64),  # of the spring [1/s]
+            ("damping_ratio", np.float64),
+            ("target", np.float64),  # where the spring rests [m]
+            ("max_spring", np.float64),  # most that the spring gives [N]; NEVER
+            ("motored", np.int64),  # 1: there is a motor
+            ("motor_speed", np.float64),  # of body2 over body1 [m/s]
+            ("max_motor", np.float64),  # [N]
+            ("limited", np.int64),  # 1: there are limits
+            ("lower", np.float64),  # [m]
+            ("upper", np.float64),
+            *((f"{name}_{what}", real) for name in ("spring", "motor", "lower", "upper") for what in IMPULSES),
+        ]
+    )
+
+
+IMPULSES = ("impulse", "given")
+"""Accumulated: what the next step starts from, for a whole step [N s]; and what the last step gave body2 in all."""
 
 
 @cache

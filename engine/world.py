@@ -12,12 +12,12 @@ from engine import validate
 from engine.bodies import Body, Pair
 from engine.configured import Configured
 from engine.constants import FRICTION
-from engine.creation import add_bodies, add_revolute, add_shape, checked_positions, finite_rows
+from engine.creation import add_bodies, add_shape, checked_positions, finite_rows
 from engine.diagnostics import Diagnostics, diagnose
 from engine.effects import EffectStatus
 from engine.effects.explosion import explode
 from engine.effects.fluid import Fluid, add_fluid
-from engine.joints.handle import RevoluteJoint
+from engine.joints import KINDS, Joining, Joint
 from engine.lacking import effect_statuses, refuse_lacking
 from engine.queries import rows_at
 from engine.records import Arbiter, arbiter_list, contact_records, joint_records
@@ -36,7 +36,7 @@ from engine.threads import MOST as MOST_THREADS
 MOST_STEPS = 10**12  # at once
 
 
-class World(Configured):
+class World(Configured, Joining):
     """Bodies, joints and arbiters in a plane, y up, in SI units.
 
     Settings by name, such as World(gravity=(0, -10), solver="soft_step", substeps=4, iterations=1,
@@ -205,31 +205,6 @@ class World(Configured):
         self._content_changed()
         return bodies
 
-    def create_joint_revolute(
-        self,
-        body1: Body,
-        body2: Body,
-        *,
-        anchor: Pair,
-        softness: float = 0.0,
-        bias_factor: float | None = None,
-        collide_connected: bool = True,
-        motor_speed: float | None = None,
-        max_motor_torque: float = 0.0,
-    ) -> RevoluteJoint:
-        """Pins two bodies together at a point of the world.
-
-        anchor [m]; softness [1/kg]: 0 is rigid, 1/(dt (d + dt k)) a spring k [N/m] with damper d [N s/m]; bias_factor:
-        part of the separation that a step removes, dt k/(d + dt k) for that spring, the solver's own if left out: 0.2
-        in sequential_impulses, that of the joint stiffness in soft_step. collide_connected: whether the two collide.
-        motor_speed [rad/s]: at which a motor turns body2 over body1, with at most max_motor_torque [N m]; None: none.
-        """
-        joint = add_revolute(
-            self, body1, body2, anchor, softness, bias_factor, collide_connected, motor_speed, max_motor_torque
-        )
-        self._content_changed()
-        return joint
-
     def create_fluid(
         self, lower: Pair, upper: Pair, *, density: float, linear_drag: float = 0.0, angular_drag: float = 0.0
     ) -> Fluid:
@@ -265,6 +240,14 @@ class World(Configured):
         self._state.joints.remove(row)
         self._content_changed()
 
+    def _joint_changed(self, row: int, structure: bool) -> None:
+        """A joint's numbers changed; structure: so that other rows or tables are called for."""
+        if structure:
+            self._content_changed()
+
+    def _joint_record(self, row: int) -> np.void:
+        return joint_records(self._state, np.array([row]))[0]
+
     def _content_changed(self) -> None:
         self._state.stale = True
 
@@ -276,11 +259,11 @@ class World(Configured):
         return [self._body_in_row(int(row)) for row in self._state.bodies.order]
 
     @property
-    def joints(self) -> list[RevoluteJoint]:
+    def joints(self) -> list[Joint]:
         """Living joints in the order of creation."""
         storage = self._state.joints
-        serials = storage.tables["joints"]["serial"]
-        return [RevoluteJoint(self, int(row), int(serials[row])) for row in storage.order]
+        serials, kinds = storage.tables["joints"]["serial"], storage.tables["joints"]["kind"]
+        return [KINDS[kinds[row]](self, int(row), int(serials[row])) for row in storage.order]
 
     @property
     def fluids(self) -> list[Fluid]:

@@ -12,10 +12,10 @@ from engine.effects.drag import DRAG, WIND
 from engine.effects.effect import Effect, EffectStatus, Property
 from engine.effects.explosion import EXPLOSION
 from engine.effects.filters import FILTERS
+from engine.effects.joints import BREAKING, JOINT_LIMITS, JOINT_MOTORS, JOINT_SPRINGS, KINDS, PASSING
 from engine.effects.magnets import MAGNETS
 from engine.effects.motion import ANGULAR_DAMPING, GRAVITY, GRAVITY_SCALE, LINEAR_DAMPING
-from engine.effects.motors import REVOLUTE_MOTORS
-from engine.effects.others import DIAGNOSTICS, PASSING, REVOLUTE
+from engine.effects.others import DIAGNOSTICS
 from engine.effects.point_gravity import POINT_GRAVITY
 
 EFFECTS: tuple[Effect, ...] = (
@@ -34,8 +34,11 @@ EFFECTS: tuple[Effect, ...] = (
     ROLLING_RESISTANCE,
     CONVEYOR,
     FILTERS,
-    REVOLUTE,
-    REVOLUTE_MOTORS,
+    *KINDS,
+    JOINT_SPRINGS,
+    JOINT_MOTORS,
+    JOINT_LIMITS,
+    BREAKING,
     PASSING,
     DIAGNOSTICS,
 )

@@ -1,104 +1,127 @@
-"""The revolute joint: a point of body1 and a point of body2 stay together, as if pinned (talk: Joint).
-
-It removes the relative velocity of its two anchors, softly if asked:
-K P = bias - dv - softness P, K being the 2x2 matrix that turns an impulse into a change of dv (GDC 2006 slides,
-"Joints" and "soft constraints" of Box2D Lite).
-"""
+"""The revolute joint: a point of body1 and a point of body2 stay together, as if pinned. They may turn."""
 
 from __future__ import annotations
 
-from engine.constants import JOINT_BIAS_FACTOR
-from engine.impulses import pull, push
-from engine.jit import kernel
-from engine.joints import revolute_motor
-from engine.lanes import const, over
-from engine.origin import center_of, origin_of
-from engine.vec2 import Vec2, rotate, spin
+from typing import TYPE_CHECKING
+
+from engine import validate
+from engine.joints.fields import Hertz, Limit, MotorSpeed, Number, limits_of, motor_of, spring_of
+from engine.joints.joint import Joint, Pair, add, anchored, checked_pair
+from engine.tables import NO_SPRING, POINT
+
+if TYPE_CHECKING:
+    from engine.bodies import Body
+    from engine.world import World
 
 
-@kernel
-def write_effective_mass(joint, motion1, motion2, r1, r2):
-    """Writes the inverse of K = (1/m1 + 1/m2) 1 - [r1]x 1/I1 [r1]x - [r2]x 1/I2 [r2]x, softened [kg]."""
-    i1 = motion1.inverse_inertia
-    i2 = motion2.inverse_inertia
-    free = motion1.inverse_mass + motion2.inverse_mass
-    k_xx = free + i1 * r1.y * r1.y + i2 * r2.y * r2.y + joint.softness
-    k_xy = -(i1 * r1.x * r1.y) - i2 * r2.x * r2.y
-    k_yy = free + i1 * r1.x * r1.x + i2 * r2.x * r2.x + joint.softness
-    inverse_determinant = over(const(1.0, k_xx), k_xx * k_yy - k_xy * k_xy)
-    joint.mass_xx = inverse_determinant * k_yy
-    joint.mass_xy = -inverse_determinant * k_xy
-    joint.mass_yy = inverse_determinant * k_xx
+class Turning(Joint):
+    """A joint that has an angle."""
+
+    __slots__ = ()
+
+    @property
+    def angle(self) -> float:
+        """Of body2 over body1, less the joint's reference angle, unwrapped [rad]."""
+        return self.body2.angle - self.body1.angle - self.reference_angle
+
+    @property
+    def speed(self) -> float:
+        """At which body2 turns over body1 [rad/s]."""
+        return self.body2.angular_velocity - self.body1.angular_velocity
+
+    @property
+    def reference_angle(self) -> float:
+        """Of body2 over body1, where the joint's own angle is 0 [rad]."""
+        return float(self._part("joints")["reference_angle"])
 
 
-@kernel
-def prepare(joints, order, bodies, motions, motors, step):
-    """Turns the anchors, computes effective masses and biases, and starts from the impulses of the last step.
+class TurnMotor(Joint):
+    """A joint whose motor turns."""
 
-    motors: None where no joint has one.
+    __slots__ = ()
+
+    motor_speed = MotorSpeed("turns", "At which the motor turns body2 over body1 [rad/s]; None: there is no motor.")
+    max_motor_torque = Number("turns", "max_motor", validate.non_negative, "Of the motor [N m].")
+
+    @property
+    def motor_torque(self) -> float:
+        """What the last step's motor gave body2, and body1 the other way, on average [N m]."""
+        dt = self.world._state.last_dt
+        return float(self._part("turns")["motor_given"]) / dt if dt > 0.0 else 0.0
+
+
+class RevoluteJoint(TurnMotor, Turning):
+    """A revolute joint; World.create_joint_revolute says what its numbers are."""
+
+    __slots__ = ()
+
+    kind = "revolute"
+
+    softness = Number("joints", "softness", validate.non_negative, "How far it gives way [1/kg].")
+    lower = Limit("turns", "lower", "Least angle [rad]; None: any.")
+    upper = Limit("turns", "upper", "Greatest angle [rad]; None: any.")
+    hertz = Hertz("turns", NO_SPRING, "Frequency of the spring that turns [1/s]; None: there is none.")
+    damping_ratio = Number("turns", "damping_ratio", validate.non_negative, "Of that spring: 1 is critical.")
+    target = Number("turns", "target", validate.number, "Angle at which that spring rests [rad].")
+
+    @property
+    def bias_factor(self) -> float | None:
+        """Part of the separation that a step removes, 0 to 1; None: the solver's own."""
+        factor = float(self._part("joints")["bias_factor"])
+        return None if factor < 0.0 else factor
+
+    @bias_factor.setter
+    def bias_factor(self, value: float | None) -> None:
+        factor = -1.0 if value is None else validate.between("bias_factor", value, 0.0, 1.0)
+        self._write("joints", {"bias_factor": factor})
+
+
+def create_joint_revolute(
+    self: World,
+    body1: Body,
+    body2: Body,
+    *,
+    anchor: Pair,
+    softness: float = 0.0,
+    bias_factor: float | None = None,
+    lower: float | None = None,
+    upper: float | None = None,
+    hertz: float | None = None,
+    damping_ratio: float = 1.0,
+    target: float = 0.0,
+    motor_speed: float | None = None,
+    max_motor_torque: float = 0.0,
+    collide_connected: bool = True,
+    break_force: float | None = None,
+    break_torque: float | None = None,
+) -> RevoluteJoint:
+    """Pins two bodies together at a point of the world.
+
+    anchor [m]; softness [1/kg]: 0 is rigid, 1/(dt (d + dt k)) a spring k [N/m] with damper d [N s/m]; bias_factor:
+    part of the separation that a step removes, dt k/(d + dt k) for that spring, the solver's own if left out: 0.2
+    in sequential_impulses, that of the joint stiffness in soft_step. Angles [rad] are of body2 over body1, 0 as they
+    are now. lower, upper: limits; hertz [1/s], damping_ratio: of a spring that turns them to `target`. motor_speed
+    [rad/s]: at which a motor turns body2, with at most max_motor_torque [N m]; None: none. collide_connected: whether
+    the two collide. break_force [N], break_torque [N m]: beyond them it breaks for good; None: never.
     """
-    for rank in range(len(order)):
-        joint = joints[order[rank]]
-        body1 = bodies[joint.body1]
-        body2 = bodies[joint.body2]
-        motion1 = motions[joint.body1]
-        motion2 = motions[joint.body2]
-        lane = motion1.vx
-        q1 = Vec2(motion1.cosine, motion1.sine)
-        q2 = Vec2(motion2.cosine, motion2.sine)
-        arm1 = Vec2(const(joint.anchor1_x - body1.local_x, lane), const(joint.anchor1_y - body1.local_y, lane))
-        arm2 = Vec2(const(joint.anchor2_x - body2.local_x, lane), const(joint.anchor2_y - body2.local_y, lane))
-        r1 = rotate(q1, arm1)
-        r2 = rotate(q2, arm2)
-        joint.r1_x = r1.x
-        joint.r1_y = r1.y
-        joint.r2_x = r2.x
-        joint.r2_y = r2.y
-        write_effective_mass(joint, motion1, motion2, r1, r2)
-
-        rate = const(0.0, lane)
-        if step.position_correction != 0:
-            factor = joint.bias_factor
-            if factor < const(0.0, lane):
-                factor = const(JOINT_BIAS_FACTOR, lane)
-            rate = factor * step.inverse_dt
-        origin = origin_of(body1, lane)
-        apart = (center_of(body2, origin, lane) + r2) - (center_of(body1, origin, lane) + r1)
-        joint.bias_x = -rate * apart.x
-        joint.bias_y = -rate * apart.y
-        if step.warm_starting == 0:
-            joint.impulse_x = 0
-            joint.impulse_y = 0
-            if motors is not None:
-                motors[rank].impulse = 0
-        if motors is not None:
-            revolute_motor.start(motors[rank], motion1, motion2, motion1, motion2)
-        impulse = Vec2(joint.impulse_x, joint.impulse_y)
-        pull(motion1, r1, impulse)
-        push(motion2, r2, impulse)
-
-
-@kernel
-def solve(joints, order, motions, motors):
-    """One pass over the joints, each removing what is left of its anchors' relative velocity, its motor first."""
-    for rank in range(len(order)):
-        joint = joints[order[rank]]
-        motion1 = motions[joint.body1]
-        motion2 = motions[joint.body2]
-        if motors is not None:
-            revolute_motor.drive(motors[rank], motion1, motion2, motion1, motion2)
-        r1 = Vec2(joint.r1_x, joint.r1_y)
-        r2 = Vec2(joint.r2_x, joint.r2_y)
-        v1 = Vec2(motion1.vx, motion1.vy)
-        v2 = Vec2(motion2.vx, motion2.vy)
-        dv = v2 + spin(motion2.w, r2) - v1 - spin(motion1.w, r1)
-        wanted_x = joint.bias_x - dv.x - joint.softness * joint.impulse_x
-        wanted_y = joint.bias_y - dv.y - joint.softness * joint.impulse_y
-        impulse = Vec2(
-            joint.mass_xx * wanted_x + joint.mass_xy * wanted_y,
-            joint.mass_xy * wanted_x + joint.mass_yy * wanted_y,
-        )
-        pull(motion1, r1, impulse)
-        push(motion2, r2, impulse)
-        joint.impulse_x += impulse.x
-        joint.impulse_y += impulse.y
+    checked_pair(self, body1, body2)
+    x, y = validate.vector("anchor", anchor)
+    p, numbers = self.precision, RevoluteJoint
+    joint = {
+        **anchored(1, body1, (x, y)),
+        **anchored(2, body2, (x, y)),
+        **numbers.softness.written(p, softness),
+        "bias_factor": -1.0 if bias_factor is None else validate.between("bias_factor", bias_factor, 0.0, 1.0),
+        "reference_angle": body2.angle - body1.angle,
+    }
+    turn = {
+        **limits_of(p, lower, upper),
+        **spring_of(p, "hertz", hertz),
+        **numbers.damping_ratio.written(p, damping_ratio),
+        **numbers.target.written(p, target),
+        **motor_of(p, motor_speed),
+        **numbers.max_motor_torque.written(p, max_motor_torque),
+    }
+    return add(
+        self, RevoluteJoint, body1, body2, POINT, collide_connected, break_force, break_torque, joint, turn
+    )  # fmt: skip

@@ -16,10 +16,10 @@ import numpy as np
 from engine import integrate
 from engine.impulses import pull, push
 from engine.jit import kernel
-from engine.joints import revolute, revolute_motor
 from engine.lanes import clamp, const, maximum, minimum, over
+from engine.solvers import talk_joints
 from engine.solvers.solver import Solver
-from engine.tables import REALS, empty
+from engine.tables import JOINT_KINDS, REALS, empty
 from engine.vec2 import Vec2, cross, dot, right_of
 
 if TYPE_CHECKING:
@@ -148,27 +148,22 @@ def solve_contacts(arbiters, contacts, points, count, motions, accumulate):
 
 
 @kernel
-def solve_all(bodies, motions, arbiters, contacts, count, joints, joint_order, motors, points, steps):
+def solve_all(bodies, motions, arbiters, contacts, count, joints, turns, joint_order, points, steps):
     """Prepares all constraints, then passes over contacts and joints `iterations` times."""
     step = steps[0]
     prepare_contacts(arbiters, contacts, count, motions, points, step)
     if joints is not None:
-        revolute.prepare(joints, joint_order, bodies, motions, motors, step)
+        talk_joints.prepare(joints, turns, joint_order, bodies, motions, step)
     for _ in range(step.iterations):
         solve_contacts(arbiters, contacts, points, count, motions, step.accumulate_impulses != 0)
         if joints is not None:
-            revolute.solve(joints, joint_order, motions, motors)
+            talk_joints.solve(joints, turns, joint_order, motions, step.dt)
     for index in range(count):
         for i in range(arbiters[index].count):
             contacts[index, i].given_normal = contacts[index, i].normal_impulse
             contacts[index, i].given_tangent = contacts[index, i].tangent_impulse
     if joints is not None:
-        for rank in range(len(joint_order)):
-            joint = joints[joint_order[rank]]
-            joint.given_x = joint.impulse_x
-            joint.given_y = joint.impulse_y
-            if motors is not None:
-                motors[rank].given = motors[rank].impulse
+        talk_joints.store(joints, turns, joint_order)
 
 
 def apply_forces(state: State, settings: Settings) -> int:
@@ -187,15 +182,16 @@ def solve(state: State, settings: Settings) -> None:
     """Stage 3 of the talk."""
     bodies, motions = state.bodies.tables["bodies"], state.bodies.tables["motions"]
     table = state.arbiters
-    motors = revolute_motor.begin(state)
+    turns = (
+        state.joints.tables["turns"] if state.active_joints is not None and "joint motors" in state.effects else None
+    )
     points = state.scratch.get("points")
     if points is None or len(points) < table.count:
         points = state.scratch["points"] = empty((2 * table.count, 2), point_dtype(state.precision))
     solve_all(
-        bodies, motions, table.rows, table.contacts, table.count, state.active_joints, state.joints.order, motors,
+        bodies, motions, table.rows, table.contacts, table.count, state.active_joints, turns, state.joints.order,
         points, state.steps,
     )  # fmt: skip
-    revolute_motor.end(state, motors)
 
 
 def update_positions(state: State, settings: Settings) -> int:
@@ -211,5 +207,12 @@ SEQUENTIAL_IMPULSES = Solver(
     update_positions,
     iterations=10,
     talk_clipping=True,
-    lacks=("restitution", "rolling resistance", "conveyor"),
+    lacks=(
+        "restitution",
+        "rolling resistance",
+        "conveyor",
+        "joint springs",
+        "joint limits",
+        *(f"{kind} joints" for kind in JOINT_KINDS if kind not in ("revolute", "filter")),
+    ),
 )

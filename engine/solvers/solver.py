@@ -4,11 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from engine.settings import Settings
     from engine.state import State
+
+
+def no_chains(state: State, settings: Settings) -> None:
+    """Joints are visited one by one."""
 
 
 @dataclass(frozen=True)
@@ -24,4 +28,5 @@ class Solver:
     has_substeps: bool = False
     speculative: bool = False  # it takes contacts before shapes touch, and kept ones
     talk_clipping: bool = False  # two boxes collide as in the talk
+    find_chains: Callable[[State, Settings], Any] = no_chains  # joints that it solves at once
     lacks: tuple[str, ...] = ()  # effects that it refuses

@@ -8,7 +8,7 @@ from typing import Any
 
 from rich.table import Table
 
-from engine import EFFECTS, EffectStatus
+from engine import EFFECTS, JOINT_KINDS, EffectStatus
 from engine.effects import Effect
 from sandbox.lab.ablation import Difference
 from sandbox.lab.tables import rendered
@@ -180,7 +180,11 @@ CALLED_FOR_BY = {
     "explosions": "`World.explode`",
     "friction": "`friction` of a shape",
     "revolute joints": "`World.create_joint_revolute`",
-    "revolute motors": "`motor_speed` of a revolute joint",
+    **{f"{kind} joints": f"`World.create_joint_{kind}`" for kind in JOINT_KINDS[1:]},
+    "joint springs": "`hertz` of a joint; welds and rods have stiff ones",
+    "joint motors": "`motor_speed` of a joint",
+    "joint limits": "`lower` and `upper` of a joint",
+    "breaking joints": "`break_force`, `break_torque` of a joint",
     "joined without colliding": "a joint with `collide_connected=False`",
     "diagnostics": "`World.diagnostics`",
 }

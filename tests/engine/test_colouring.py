@@ -22,7 +22,7 @@ from engine.colouring import (
     count_colours,
     give_colours,
 )
-from engine.tables import arbiter_dtype, empty, motion_dtype, revolute_dtype
+from engine.tables import arbiter_dtype, empty, motion_dtype, joint_dtype
 from tests.engine.worlds import DT, busy, floor, gathering, run
 
 plain_too = pytest.mark.kernel
@@ -169,7 +169,7 @@ def test_any_change(states: list[tuple[int, int]]) -> None:
 def test_joints_are_coloured_in_their_order(data: st.DataObject, pairs: list[tuple[int, int]]) -> None:
     order = np.array(data.draw(st.permutations(range(len(pairs)))), np.int64)
     moving = data.draw(st.lists(st.booleans(), min_size=BODIES, max_size=BODIES))
-    joints, colours = empty(len(pairs), revolute_dtype("single")), np.full(len(pairs), 99, np.int32)
+    joints, colours = empty(len(pairs), joint_dtype("single")), np.full(len(pairs), 99, np.int32)
     joints["body1"], joints["body2"] = np.array(pairs, np.int64).reshape(-1, 2).T
     contacts = Contacts([pairs[row] for row in order], moving)
     colour_joints(joints, order, contacts.motions, np.full(BODIES, -1), colours)

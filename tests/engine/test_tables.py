@@ -20,7 +20,7 @@ DTYPES = {
         f"{make.__name__}, {precision}": make(precision)
         for precision in REALS
         for make in (tables.motion_dtype, tables.placement_dtype, tables.arbiter_dtype, tables.contact_dtype,
-                     tables.revolute_dtype, tables.step_dtype, soft.mover_dtype, soft.constraint_dtype,
+                     tables.joint_dtype, tables.step_dtype, soft.mover_dtype, soft.constraint_dtype,
                      soft.friction_dtype, soft.belt_dtype, soft.rolling_dtype, soft.restitution_dtype)
     },
 }  # fmt: skip

@@ -109,7 +109,7 @@ def test_every_effect_of_the_issue_has_a_scene() -> None:
         ("Conveyor", "conveyor"), ("Linear Damping", "linear damping"), ("Angular Damping", "angular damping"),
         ("Gravity Scale", "gravity scale"), ("Drag", "drag"), ("Wind", "wind"), ("Buoyancy", "buoyancy"),
         ("Magnets", "magnets"), ("Point Gravity", "point gravity"), ("Explosion", "explosions"), ("Filters", "filters"),
-        ("Motors", "revolute motors"),
+        ("Motors", "joint motors"),
     ],
 )  # fmt: skip
 def test_scene_of_an_effect_calls_for_it(name: str, effect: str) -> None:

@@ -13,13 +13,17 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from engine.atomics import new_counters
-from engine.joints.revolute_motor import motor_dtype
 from engine.mixing import RULES
 from engine.program import COUNTERS, PARTS_A_THREAD, STAGE, clear_counters
 from engine.rows import wide
 from engine.simd import WIDTH
 from engine.solvers.soft_step import movers, tables
-from engine.solvers.soft_step.joints import joint_dtype
+from engine.solvers.soft_step.direct.chains import find_chains
+from engine.solvers.soft_step.joints.free import limit_dtype, motor_dtype, spring_dtype
+from engine.solvers.soft_step.joints.line import line_dtype
+from engine.solvers.soft_step.joints.point import cap_dtype, point_dtype
+from engine.solvers.soft_step.joints.slide import slide_dtype
+from engine.solvers.soft_step.joints.turn import turn_dtype
 from engine.solvers.soft_step.schedule import most_stages, write_program
 from engine.solvers.soft_step.work import run
 from engine.solvers.solver import Solver
@@ -31,7 +35,7 @@ if TYPE_CHECKING:
     from engine.state import State
 
 wide_dtype = cache(wide)
-MOTORS = ("motored", "motor_speed", "max_motor_torque", "motor_impulse", "motor_given")
+FREE = {"joint springs": spring_dtype, "joint motors": motor_dtype, "joint limits": limit_dtype}
 
 
 def table(state: State, name: str, dtype: np.dtype, count: int, effect: str = "", exactly: bool = False) -> Any:
@@ -77,12 +81,13 @@ def make_plan(state: State, settings: Settings) -> Plan:
     pairs, layout, joint_layout, steps = state.arbiters, state.layout, state.joint_layout, state.steps
     bodies, motions = state.bodies.tables["bodies"], state.bodies.tables["motions"]
     threads = usable(state.threads, len(state.bodies.order))
-    blocks, joint_blocks = layout.blocks, joint_layout.blocks
+    blocks = layout.blocks
     bounces = rows(state, "bounces", tables.restitution_dtype(p), blocks, "restitution")
-    program = table(state, "program", STAGE, most_stages(settings.substeps, settings.iterations))
+    colours = int((np.diff(layout.firsts) > 0).sum()) + joint_layout.stages
+    program = table(state, "program", STAGE, most_stages(settings.substeps, settings.iterations, colours))
     stages = write_program(
         program, len(state.body_lanes) // WIDTH, len(state.dynamic_lanes) // WIDTH, len(state.moving_lanes) // WIDTH,
-        layout.firsts, joint_layout.firsts, bounces is not None, threads, steps,
+        layout.firsts, joint_layout.firsts, state.chains.count if state.chains else 0, bounces is not None, threads, steps,
     )  # fmt: skip
     counters = state.scratch.get("counters")
     if counters is None or len(counters) < COUNTERS * len(program):
@@ -102,14 +107,38 @@ def make_plan(state: State, settings: Settings) -> Plan:
         state.column("rolling resistance", state.shapes, "rolling_resistance"),
         state.column("restitution", state.shapes, "restitution"),
         RULES.index(settings.restitution_mixing),
-        state.active_joints, state.joint_slots,
-        rows(state, "joints", joint_dtype(p), joint_blocks, "revolute joints"),
-        rows(state, "motors", motor_dtype(p), joint_blocks, "revolute motors"),
-        *(state.joints.ensure(name) if "revolute motors" in state.effects else None for name in MOTORS),
+        *joint_arguments(state),
         steps if "gravity" in state.effects else None, state.gravity_scales, state.linear_damping,
         state.angular_damping, steps,
     )  # fmt: skip
     return Plan(state.threads, threads, stages, arguments)
+
+
+def joint_arguments(state: State) -> tuple:
+    """The tables of joints that a pass takes: None where none calls for them."""
+    layout, slots, p = state.joint_layout, state.joint_layout.slots, state.precision
+    if state.active_joints is None:
+        return (None,) * (3 + 5 + 5 + 2 + 3 + 1)
+
+    def rows_of(name: str, dtype: np.dtype) -> Any:
+        return rows(state, name, dtype, layout.blocks(name)) if name in layout.called_for else None
+
+    def free_of(name: str) -> tuple:
+        blocks = layout.blocks(name)
+        there = name in layout.called_for
+        return tuple(
+            rows(state, f"{name}, {effect}", dtype(p), blocks, effect) if there else None
+            for effect, dtype in FREE.items()
+        )
+
+    caps = rows(state, "caps", cap_dtype(p), layout.blocks("points")) if layout.capped else None
+    return (
+        state.active_joints, state.joints.tables["turns"], state.joints.tables["slides"],
+        slots["turns"], rows_of("turns", turn_dtype(p)), *free_of("turns"),
+        slots["slides"], rows_of("slides", slide_dtype(p)), *free_of("slides"),
+        slots["lines"], rows_of("lines", line_dtype(p)),
+        slots["points"], rows_of("points", point_dtype(p)), caps, state.chains.tables() if state.chains else None,
+    )  # fmt: skip
 
 
 def solve(state: State, settings: Settings) -> None:
@@ -149,4 +178,5 @@ SOFT_STEP = Solver(
     substeps=4,
     has_substeps=True,
     speculative=True,
+    find_chains=lambda state, settings: find_chains(state, settings, state.prepared_dt),
 )

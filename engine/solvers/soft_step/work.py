@@ -5,27 +5,29 @@ from __future__ import annotations
 from engine.jit import kernel
 from engine.lanes import const
 from engine.program import done, part_of, take, wait
-from engine.solvers.soft_step import contacts, friction, joints, movers, passes, restitution, rolling
+from engine.solvers.soft_step import contacts, friction, movers, passes, restitution, rolling
+from engine.solvers.soft_step.direct.work import solve_islands
+from engine.solvers.soft_step.joints import work as joints
 from engine.solvers.soft_step.schedule import (
     BEGIN,
     BIASED,
-    BIASED_JOINTS,
     BOUNCE,
+    CHAINS,
     DRIVE,
     FORGET,
-    FORGET_JOINTS,
+    JOINTS,
+    LINES,
+    POINTS,
     POSITIONS,
     PREPARE,
-    PREPARE_JOINTS,
     RELAX,
-    RELAX_JOINTS,
-    RELAX_JOINTS_LAST,
     RELAX_LAST,
+    SLIDES,
     STORE,
-    STORE_JOINTS,
+    TURNS,
     VELOCITIES,
+    VERBS,
     WARM,
-    WARM_JOINTS,
 )  # fmt: skip
 from engine.threads import close, enter, leave
 
@@ -36,8 +38,9 @@ from engine.threads import close, enter, leave
 @kernel(_nrt=False)
 def do_part(
     kind, first, last, bodies, motions, moved, order, dynamic, moving, drives, arbiters, touching, shapes, slots, rows,
-    frictions, belts, rollings, bounces, tangent_speed, rolling_resistance, restitutions, rule, joint_table,
-    joint_slots, joint_rows, motors, motored, speeds, torques, motor_impulses, motor_given, gravity, scales, linear,
+    frictions, belts, rollings, bounces, tangent_speed, rolling_resistance, restitutions, rule, joint_table, turns,
+    slides, turn_slots, turn_rows, turn_springs, turn_motors, turn_limits, slide_slots, slide_rows, slide_springs,
+    slide_motors, slide_limits, line_slots, line_rows, point_slots, point_rows, caps, chains, gravity, scales, linear,
     angular, steps,
 ):  # fmt: skip
     """One part of one stage: blocks from `first` to before `last`. Tables are None where nothing calls for them."""
@@ -76,23 +79,32 @@ def do_part(
         if kind == BOUNCE:
             restitution.apply(first, last, rows, bounces, moved, step)
     if joint_table is not None:
-        if kind == PREPARE_JOINTS:
-            joints.prepare(first, last, joint_slots, joint_table, bodies, motions, joint_rows, step)
-            if motors is not None:
-                joints.prepare_motors(
-                    first, last, joint_slots, joint_rows, motored, speeds, torques, motor_impulses, motors, step
+        rows, verb = (kind - JOINTS) // VERBS, (kind - JOINTS) % VERBS
+        if turn_rows is not None:
+            if rows == TURNS:
+                joints.turn(
+                    verb, first, last, turn_slots, turn_rows, turn_springs, turn_motors, turn_limits, joint_table,
+                    turns, bodies, motions, moved, step,
                 )  # fmt: skip
-        elif kind == WARM_JOINTS:
-            joints.warm_start(first, last, joint_rows, motors, moved)
-        elif kind == BIASED_JOINTS or kind == RELAX_JOINTS or kind == RELAX_JOINTS_LAST:
-            kept = one if kind == RELAX_JOINTS_LAST else nought
-            joints.solve(first, last, joint_rows, motors, moved, kind == BIASED_JOINTS, kept)
-        elif kind == STORE_JOINTS:
-            joints.store_impulses(
-                first, last, joint_slots, joint_rows, motors, joint_table, motor_impulses, motor_given, step
-            )  # fmt: skip
-        elif kind == FORGET_JOINTS:
-            joints.forget(first, last, joint_rows, motors)
+        if slide_rows is not None:
+            if rows == SLIDES:
+                joints.slide(
+                    verb, first, last, slide_slots, slide_rows, slide_springs, slide_motors, slide_limits, joint_table,
+                    slides, bodies, motions, moved, step,
+                )  # fmt: skip
+        if line_rows is not None:
+            if rows == LINES:
+                joints.line(verb, first, last, line_slots, line_rows, joint_table, bodies, motions, moved, step)
+        if point_rows is not None:
+            if rows == POINTS:
+                joints.point(
+                    verb, first, last, point_slots, point_rows, caps, joint_table, bodies, motions, moved, step
+                )
+        if chains is not None:
+            if rows == CHAINS:
+                solve_islands(
+                    verb, first, last, *chains, joint_table, turns, slides, bodies, motions, moved, step
+                )  # fmt: skip
 
 
 @kernel(_nrt=False)

@@ -28,7 +28,7 @@ KNOWN = frozenset(
         "conveyor",
         "filters",
         "revolute joints",
-        "revolute motors",
+        "joint motors",
         "joined without colliding",
     }
 )

@@ -29,7 +29,7 @@ KNOWN = frozenset(
         "restitution",
         "filters",
         "revolute joints",
-        "revolute motors",
+        "joint motors",
         "joined without colliding",
     }
 )

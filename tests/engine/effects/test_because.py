@@ -56,7 +56,7 @@ CALLS: dict[str, tuple[Callable[[World], None], dict[str, str]]] = {
     "joint": (join, {"revolute joints": "1 revolute joint"}),
     "motor": (
         lambda world: join(world, motor_speed=0.0),
-        {"revolute joints": "1 revolute joint", "revolute motors": "1 revolute joint with a motor"},
+        {"revolute joints": "1 revolute joint", "joint motors": "1 joint with a motor"},
     ),
     "passing": (
         lambda world: join(world, collide_connected=False),

@@ -25,7 +25,7 @@ ELSEWHERE = {
     "rolling resistance": ("engine.solvers.soft_step.rolling.",),
     "conveyor": ("engine.solvers.soft_step.friction.prepare_belts",),
     "revolute joints": ("engine.joints.", "engine.solvers.soft_step.joints."),
-    "revolute motors": ("engine.joints.revolute_motor.",),
+    "joint motors": ("engine.solvers.soft_step.joints.free.prepare_motors",),
     "joined without colliding": ("engine.pairs.drop_joined",),
     "diagnostics": ("engine.diagnostics.",),
 }

@@ -1,0 +1,93 @@
+"""What joints call for: each kind, and the springs, motors and limits that some have."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from engine.effects.effect import Effect
+from engine.tables import JOINT_KINDS, NO_SPRING
+
+if TYPE_CHECKING:
+    from engine.settings import Settings
+    from engine.state import State
+
+SUMMARIES = {
+    "revolute": "bodies are pinned together",
+    "distance": "rods, ropes and springs between two points",
+    "prismatic": "bodies slide along an axis of another",
+    "weld": "bodies are held together as one, or nearly",
+    "wheel": "wheels on springs",
+    "motor": "bodies are driven to a pose over another",
+    "mouse": "bodies are drawn to a point",
+    "filter": "pairs of bodies that do not collide",
+}
+
+
+def joints_of(state: State) -> np.ndarray:
+    """The living joints, in the order of creation: a copy."""
+    return state.joints.tables["joints"][state.joints.order]
+
+
+def number_of_joints(count: int, what: str) -> str:
+    return f"{count} {what.format(s='s' * (count != 1))}" if count else ""
+
+
+def of_kind(kind: str) -> Callable[[State, Settings], str]:
+    """Called for by joints of that kind."""
+
+    def because(state: State, settings: Settings) -> str:
+        if not state.joints.count:
+            return ""
+        count = int(np.count_nonzero(joints_of(state)["kind"] == JOINT_KINDS.index(kind)))
+        return number_of_joints(count, kind + " joint{s}")
+
+    return because
+
+
+def with_part(field: str, nothing: int, what: str) -> Callable[[State, Settings], str]:
+    """Called for by turns or slides that have it."""
+
+    def because(state: State, settings: Settings) -> str:
+        if not state.joints.count:
+            return ""
+        order = state.joints.order
+        has = [state.joints.tables[name][field][order] != nothing for name in ("turns", "slides")]
+        return number_of_joints(int(np.count_nonzero(has[0] | has[1])), "joint{s} with " + what)
+
+    return because
+
+
+def passing(state: State, settings: Settings) -> str:
+    """Joints whose bodies do not collide with each other."""
+    count = int(np.count_nonzero(joints_of(state)["collide_connected"] == 0)) if state.joints.count else 0
+    return number_of_joints(count, "joint{s} of bodies that do not collide")
+
+
+def breaking(state: State, settings: Settings) -> str:
+    """Joints that a force or a torque breaks."""
+    if not state.joints.count:
+        return ""
+    joints = joints_of(state)
+    return number_of_joints(
+        int(np.count_nonzero((joints["break_force"] >= 0.0) | (joints["break_torque"] >= 0.0))),
+        "joint{s} that may break",
+    )
+
+
+KINDS = tuple(Effect(f"{kind} joints", SUMMARIES[kind], of_kind(kind)) for kind in JOINT_KINDS)
+JOINT_SPRINGS = Effect(
+    "joint springs", "springs, soft or stiff, where joints turn or slide", with_part("spring", NO_SPRING, "a spring"),
+    needs="revolute joints",
+)  # fmt: skip
+JOINT_MOTORS = Effect(
+    "joint motors", "joints drive what they join", with_part("motored", 0, "a motor"), needs="revolute joints"
+)
+JOINT_LIMITS = Effect(
+    "joint limits", "joints turn or slide so far and no further", with_part("limited", 0, "limits"),
+    needs="revolute joints",
+)  # fmt: skip
+BREAKING = Effect("breaking joints", "joints give way for good beyond a force or torque", breaking)
+PASSING = Effect("joined without colliding", "joined bodies pass through each other", passing)

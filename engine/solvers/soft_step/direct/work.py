@@ -1,0 +1,73 @@
+"""What a step does to the islands that are solved at once: the stages of the program."""
+
+from __future__ import annotations
+
+from engine.jit import kernel
+from engine.solvers.soft_step.direct import rows as rigid
+from engine.solvers.soft_step.direct import system
+from engine.solvers.soft_step.schedule import (
+    BIASED_ROWS,
+    PREPARE_ROWS,
+    REFRESH_ROWS,
+    RELAX_ROWS,
+    RELAX_ROWS_LAST,
+    STORE_ROWS,
+)  # fmt: skip
+
+import os
+CYCLE = float(os.environ.get("CYC", 31.0))
+ZETA = float(os.environ.get("ZETA", 2.0))
+CORRECTION = CYCLE / (2 * ZETA + CYCLE)
+REGULAR = 1 / (CYCLE * (2 * ZETA + CYCLE))
+
+
+@kernel
+def solve_islands(
+    verb, first, last, islands, order, couplings, columns, places, updates, rows, errors, jacobians, diagonals, blocks,
+    factors, wanted, accumulated, given, joints, turns, slides, bodies, motions, movers, step,
+):  # fmt: skip
+    """One verb of the islands from `first` to before `last`."""
+    for k in range(first, last):
+        island = islands[k]
+        begin, end = island.first, island.last
+        if verb == PREPARE_ROWS:
+            rigid.prepare(
+                begin, end, order, joints, turns, slides, bodies, motions, rows, errors, jacobians
+            )  # fmt: skip
+            clear(begin, end, given)
+            assemble(island, couplings, columns, updates, rows, jacobians, diagonals, blocks, factors)
+        elif verb == REFRESH_ROWS:
+            rigid.refresh(begin, end, slides, rows, movers, errors, jacobians)
+            assemble(island, couplings, columns, updates, rows, jacobians, diagonals, blocks, factors)
+        elif verb == STORE_ROWS:
+            rigid.store(begin, end, rows, given, accumulated, joints, turns, slides, step)
+        elif verb == BIASED_ROWS or verb == RELAX_ROWS or verb == RELAX_ROWS_LAST:
+            rate = 0.0
+            if verb == BIASED_ROWS:
+                rate = CORRECTION * step.inverse_h if step.position_correction != 0 else 0.0
+            kept = 1.0 if verb == RELAX_ROWS_LAST else 0.0
+            system.write_wanted(begin, end, rows, errors, jacobians, movers, rate, wanted)
+            system.substitute(begin, end, columns, places, diagonals, factors, wanted)
+            system.give(begin, end, rows, jacobians, wanted, accumulated, given, kept, movers)
+        else:
+            clear(begin, end, accumulated)
+
+
+@kernel
+def clear(first, last, values):
+    """Nothing yet: exact impulses need no start."""
+    for k in range(first, last):
+        for i in range(rigid.ROWS):
+            values[k, i] = 0.0
+
+
+@kernel
+def assemble(island, couplings, columns, updates, rows, jacobians, diagonals, blocks, factors):
+    """The system where the bodies are, and its factors."""
+    for n in range(columns[island.first].first, columns[island.last].first):
+        for i in range(rigid.ROWS):
+            for j in range(rigid.ROWS):
+                blocks[n, i, j] = 0.0
+    system.write_diagonals(island.first, island.last, rows, jacobians, diagonals, REGULAR)
+    system.write_couplings(island.first_coupling, island.last_coupling, couplings, rows, jacobians, blocks)
+    system.factor(island.first, island.last, columns, updates, diagonals, blocks, factors)
