@@ -83,7 +83,7 @@ def _stretch(state: State, settings: Settings, island: Island, order: Any, hertz
         0, last, p.order, tables["joints"], tables["turns"], tables["slides"], state.bodies.tables["bodies"], motions,
         c.rows, c.errors, c.jacobians,
     )  # fmt: skip
-    system.write_diagonals(0, last, c.rows, c.jacobians, c.diagonals, system.REGULAR)
+    system.write_diagonals(0, last, c.rows, c.jacobians, c.diagonals, 1e-6)
     system.write_couplings(0, len(p.couplings), p.couplings, c.rows, c.jacobians, c.blocks)
     stiff = np.einsum("kii->ki", c.diagonals).copy()
     system.factor(0, last, p.columns, p.updates, c.diagonals, c.blocks, c.factors)

@@ -39,7 +39,9 @@ def rigid_joints(state: State) -> np.ndarray:
     turns, slides = state.joints.tables["turns"], state.joints.tables["slides"]
     joint, turn, slide = joints[order], turns[order], slides[order]
     kinds = np.isin(joint["kind"], RIGID)
-    holds = (joint["held"] != NOTHING) & (joint["hertz"] == 0.0) & (joint["softness"] == 0.0) & (joint["bias_factor"] < 0.0)
+    holds = (
+        (joint["held"] != NOTHING) & (joint["hertz"] == 0.0) & (joint["softness"] == 0.0) & (joint["bias_factor"] < 0.0)
+    )
     rod = (slide["along"] != ALONG_NOTHING) & (slide["spring"] == STIFF)
     rod &= (slide["motored"] == 0) & (slide["limited"] == 0)
     turned = (turn["along"] == ALONG_NOTHING) | (turn["spring"] == STIFF) | (joint["kind"] != WELD)

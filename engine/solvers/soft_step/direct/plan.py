@@ -102,7 +102,9 @@ def make_plan(islands: list[Order], bodies: np.ndarray, moves: np.ndarray) -> Pl
             rows = sorted(place[other] for other in below)
             for a, right in enumerate(rows):
                 updates.append((blocks[right, column], blocks[right, column], right, 1))
-                updates += [(blocks[row, column], blocks[right, column], blocks[row, right], 0) for row in rows[a + 1 :]]
+                updates += [
+                    (blocks[row, column], blocks[right, column], blocks[row, right], 0) for row in rows[a + 1 :]
+                ]
         couplings += _couplings(island, place, blocks, bodies, moves)
         order += island.order
         ranges.append((first, len(order), first_coupling, len(couplings)))

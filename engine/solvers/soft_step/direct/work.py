@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import math
+
+from engine.constants import JOINT_DAMPING_RATIO
 from engine.jit import kernel
 from engine.solvers.soft_step.direct import rows as rigid
 from engine.solvers.soft_step.direct import system
@@ -14,11 +17,16 @@ from engine.solvers.soft_step.schedule import (
     STORE_ROWS,
 )  # fmt: skip
 
-import os
-CYCLE = float(os.environ.get("CYC", 31.0))
-ZETA = float(os.environ.get("ZETA", 2.0))
-CORRECTION = CYCLE / (2 * ZETA + CYCLE)
-REGULAR = 1 / (CYCLE * (2 * ZETA + CYCLE))
+STIFFNESS = 10.0 * math.pi
+"""w h, w being the frequency of a joint that is solved at once and h a substep: twenty times that of one that is
+visited. Larger: a taut line of planks, which is held by the smallest sag, shakes; smaller: chains stretch."""
+
+CORRECTION = STIFFNESS / (2.0 * JOINT_DAMPING_RATIO + STIFFNESS)
+"""Part of a joint's error that a substep removes; see engine/softness.py, as for the next."""
+
+GIVE = 1.0 / (STIFFNESS * (2.0 * JOINT_DAMPING_RATIO + STIFFNESS))
+"""How far a row gives way, as a part of its own diagonal: with it a loop that holds the same thing twice, such as a
+ring of welds, can be solved."""
 
 
 @kernel
@@ -41,7 +49,7 @@ def solve_islands(
             assemble(island, couplings, columns, updates, rows, jacobians, diagonals, blocks, factors)
         elif verb == STORE_ROWS:
             rigid.store(begin, end, rows, given, accumulated, joints, turns, slides, step)
-        elif verb == BIASED_ROWS or verb == RELAX_ROWS or verb == RELAX_ROWS_LAST:
+        elif verb in (BIASED_ROWS, RELAX_ROWS, RELAX_ROWS_LAST):
             rate = 0.0
             if verb == BIASED_ROWS:
                 rate = CORRECTION * step.inverse_h if step.position_correction != 0 else 0.0
@@ -68,6 +76,6 @@ def assemble(island, couplings, columns, updates, rows, jacobians, diagonals, bl
         for i in range(rigid.ROWS):
             for j in range(rigid.ROWS):
                 blocks[n, i, j] = 0.0
-    system.write_diagonals(island.first, island.last, rows, jacobians, diagonals, REGULAR)
+    system.write_diagonals(island.first, island.last, rows, jacobians, diagonals, GIVE)
     system.write_couplings(island.first_coupling, island.last_coupling, couplings, rows, jacobians, blocks)
     system.factor(island.first, island.last, columns, updates, diagonals, blocks, factors)
