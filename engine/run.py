@@ -148,6 +148,7 @@ def can_repeat(state: State, settings: Settings) -> bool:
     return (
         not (numba.config.DISABLE_JIT or state.pairs_are_stale or state.colours_are_stale or state.forces)
         and state.prepared_carried == 1.0
+        and "breaking joints" not in state.effects
         and SOLVERS[settings.solver] is SOFT_STEP
         and isinstance(state.broad_phase, DynamicTree)
         and usable(state.threads, max(len(state.bodies.order), state.arbiters.count)) == 1

@@ -11,6 +11,7 @@ from collections.abc import Callable
 import numpy as np
 
 from engine.atomics import new_counters
+from engine.breaking import break_joints
 from engine.constants import BIAS_FACTOR, BOUNDS_MARGIN, SLOP
 from engine.errors import StepError
 from engine.narrow_phase import TOGETHER
@@ -116,6 +117,8 @@ def update_positions(state: State, settings: Settings) -> None:
     lost = SOLVERS[settings.solver].update_positions(state, settings)
     if lost >= 0:
         raise lost_in_solver(state, lost)
+    if "breaking joints" in state.effects:
+        break_joints(state, settings)
 
 
 def lost_in_solver(state: State, lost: int) -> StepError:

@@ -87,7 +87,8 @@ def make_plan(state: State, settings: Settings) -> Plan:
     program = table(state, "program", STAGE, most_stages(settings.substeps, settings.iterations, colours))
     stages = write_program(
         program, len(state.body_lanes) // WIDTH, len(state.dynamic_lanes) // WIDTH, len(state.moving_lanes) // WIDTH,
-        layout.firsts, joint_layout.firsts, state.chains.count if state.chains else 0, bounces is not None, threads, steps,
+        layout.firsts, joint_layout.firsts, state.chains.count if state.chains else 0, bounces is not None, threads,
+        steps,
     )  # fmt: skip
     counters = state.scratch.get("counters")
     if counters is None or len(counters) < COUNTERS * len(program):
@@ -178,5 +179,5 @@ SOFT_STEP = Solver(
     substeps=4,
     has_substeps=True,
     speculative=True,
-    find_chains=lambda state, settings: find_chains(state, settings, state.prepared_dt),
+    find_chains=find_chains,
 )

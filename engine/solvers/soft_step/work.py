@@ -102,9 +102,7 @@ def do_part(
                 )
         if chains is not None:
             if rows == CHAINS:
-                solve_islands(
-                    verb, first, last, *chains, joint_table, turns, slides, bodies, motions, moved, step
-                )  # fmt: skip
+                solve_islands(verb, first, last, chains, joint_table, turns, slides, bodies, motions, moved, step)
 
 
 @kernel(_nrt=False)

@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from engine.softness import stiffness
 from engine.solvers.soft_step.direct import choose, rows, system
 from engine.solvers.soft_step.direct.plan import Plan, make_plan
 from engine.solvers.soft_step.tables import mover_dtype
-from engine.softness import stiffness
 from engine.tables import empty
 
 if TYPE_CHECKING:
@@ -44,7 +44,7 @@ class Chains:
         )  # fmt: skip
 
 
-def find_chains(state: State, settings: Settings, dt: float) -> Chains | None:
+def find_chains(state: State, settings: Settings) -> Chains | None:
     """What is to be solved at once, as the settings say; None where nothing is."""
     if settings.joint_solving == "iterated" or not state.joints.count:
         return None
@@ -53,7 +53,7 @@ def find_chains(state: State, settings: Settings, dt: float) -> Chains | None:
         candidates = [island for island in candidates if choose.may_give_way(state, island)]
     islands = [(island, order) for island in candidates if (order := choose.order_of(state, island)) is not None]
     if settings.joint_solving == "auto" and islands:
-        hertz = stiffness(settings, dt).joint_hertz
+        hertz = stiffness(settings, float(state.steps["dt"][0])).joint_hertz
         islands = [one for one in islands if _stretch(state, settings, *one, hertz) > choose.MOST_STRETCH]
     if not islands:
         return None

@@ -1,7 +1,7 @@
 """Which islands of joints are solved at once: those that would give way if their joints were visited one by one.
 
-A joint that carries a load F gives way by F K / w^2, K being what an impulse of 1 changes of its rate and w = 2 pi f its
-frequency (docs/soft_step.md). The loads are those of gravity, from the very system that would be solved: what hangs,
+A joint that carries a load F gives way by F K / w^2, K being what an impulse of 1 changes of its rate and w = 2 pi f
+its frequency (docs/soft_step.md). The loads are those of gravity, from the system that would be solved: what hangs,
 hangs on its joints, and what falls freely carries nothing. So a scene calls for it by what it is made of.
 """
 

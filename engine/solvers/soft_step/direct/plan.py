@@ -84,8 +84,11 @@ class Plan(NamedTuple):
 def make_plan(islands: list[Order], bodies: np.ndarray, moves: np.ndarray) -> Plan:
     """bodies (joints, 2): rows of the bodies of every joint; moves (bodies,) bool: whether an impulse moves it."""
     order: list[int] = []
-    ranges, couplings, places, updates = [], [], [], []
-    columns = []
+    ranges: list[tuple] = []
+    couplings: list[tuple] = []
+    columns: list[tuple] = []
+    updates: list[tuple] = []
+    places: list[int] = []
     for island in islands:
         first, first_coupling = len(order), len(couplings)
         place = {joint: first + k for k, joint in enumerate(island.order)}

@@ -31,10 +31,11 @@ ring of welds, can be solved."""
 
 @kernel
 def solve_islands(
-    verb, first, last, islands, order, couplings, columns, places, updates, rows, errors, jacobians, diagonals, blocks,
-    factors, wanted, accumulated, given, joints, turns, slides, bodies, motions, movers, step,
+    verb, first, last, chains, joints, turns, slides, bodies, motions, movers, step
 ):  # fmt: skip
-    """One verb of the islands from `first` to before `last`."""
+    """One verb of the islands from `first` to before `last`. chains: the tables of Chains."""
+    islands, order, couplings, columns, places, updates = chains[:6]
+    rows, errors, jacobians, diagonals, blocks, factors, wanted, accumulated, given = chains[6:]
     for k in range(first, last):
         island = islands[k]
         begin, end = island.first, island.last
