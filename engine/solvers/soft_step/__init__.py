@@ -122,13 +122,13 @@ def joint_arguments(state: State) -> tuple:
         return (None,) * (3 + 5 + 5 + 2 + 3 + 1)
 
     def rows_of(name: str, dtype: np.dtype) -> Any:
-        return rows(state, name, dtype, layout.blocks(name)) if name in layout.called_for else None
+        return rows(state, f"joints, {name}", dtype, layout.blocks(name)) if name in layout.called_for else None
 
     def free_of(name: str) -> tuple:
         blocks = layout.blocks(name)
         there = name in layout.called_for
         return tuple(
-            rows(state, f"{name}, {effect}", dtype(p), blocks, effect) if there else None
+            rows(state, f"joints, {name}, {effect}", dtype(p), blocks, effect) if there else None
             for effect, dtype in FREE.items()
         )
 
