@@ -164,11 +164,13 @@ class State:
 
     def _joined_pairs(self) -> np.ndarray:
         """(P, 2) int64 serials of bodies joined without colliding, ascending."""
-        joints = self.joints.tables["joints"][self.joints.order]
-        joints = joints[joints["collide_connected"] == 0]
+        joints, order = self.joints.tables["joints"], self.joints.order
+        order = order[joints["collide_connected"][order] == 0]
         serials = self.bodies.tables["bodies"]["serial"]
-        pairs = np.sort(np.stack([serials[joints["body1"]], serials[joints["body2"]]], axis=1), axis=1)
-        return np.unique(pairs, axis=0)
+        one, other = serials[joints["body1"][order]], serials[joints["body2"][order]]
+        low, high = np.minimum(one, other), np.maximum(one, other)
+        pairs = np.stack([low, high], axis=1)[np.lexsort((high, low))]
+        return pairs[np.append(True, (np.diff(pairs, axis=0) != 0).any(axis=1))] if len(pairs) else pairs
 
     # --- pairs and arbiters -------------------------------------------------------------------------------------
 

@@ -12,7 +12,7 @@ from engine.effects.drag import DRAG, WIND
 from engine.effects.effect import Effect, EffectStatus, Property
 from engine.effects.explosion import EXPLOSION
 from engine.effects.filters import FILTERS
-from engine.effects.joints import BREAKING, JOINT_LIMITS, JOINT_MOTORS, JOINT_SPRINGS, KINDS, PASSING
+from engine.effects.joints import BREAKING, CHAINS, JOINT_LIMITS, JOINT_MOTORS, JOINT_SPRINGS, KINDS, PASSING
 from engine.effects.magnets import MAGNETS
 from engine.effects.motion import ANGULAR_DAMPING, GRAVITY, GRAVITY_SCALE, LINEAR_DAMPING
 from engine.effects.others import DIAGNOSTICS
@@ -38,6 +38,7 @@ EFFECTS: tuple[Effect, ...] = (
     JOINT_SPRINGS,
     JOINT_MOTORS,
     JOINT_LIMITS,
+    CHAINS,
     BREAKING,
     PASSING,
     DIAGNOSTICS,

@@ -184,6 +184,7 @@ CALLED_FOR_BY = {
     "joint springs": "`hertz` of a joint; welds and rods have stiff ones",
     "joint motors": "`motor_speed` of a joint",
     "joint limits": "`lower` and `upper` of a joint",
+    "chains": "chains, bridges and the like, by what they are made of; or `World.joint_solving`",
     "breaking joints": "`break_force`, `break_torque` of a joint",
     "joined without colliding": "a joint with `collide_connected=False`",
     "diagnostics": "`World.diagnostics`",

@@ -46,11 +46,9 @@ class Chains:
 
 def find_chains(state: State, settings: Settings) -> Chains | None:
     """What is to be solved at once, as the settings say; None where nothing is."""
-    if settings.joint_solving == "iterated" or not state.joints.count:
+    if settings.joint_solving == "iterated" or "chains" in state.suppressed or not state.joints.count:
         return None
-    candidates = choose.islands_of(state, choose.rigid_joints(state))
-    if settings.joint_solving == "auto":
-        candidates = [island for island in candidates if choose.may_give_way(state, island)]
+    candidates = choose.islands_of(state, choose.rigid_joints(state), settings.joint_solving == "auto")
     islands = [(island, order) for island in candidates if (order := choose.order_of(state, island)) is not None]
     if settings.joint_solving == "auto" and islands:
         hertz = stiffness(settings, float(state.steps["dt"][0])).joint_hertz
