@@ -6,6 +6,7 @@ from engine.diagnostics import Diagnostics
 from engine.effects import EFFECTS, EffectStatus
 from engine.effects.fluid import Fluid
 from engine.errors import StepError
+from engine.events import BODY_EVENT, BROKEN_EVENT, HIT_EVENT, MOVED_EVENT, TOUCH_EVENT, Events
 from engine.joints.handle import RevoluteJoint
 from engine.records import Arbiter, Contact
 from engine.settings import Settings
@@ -19,15 +20,20 @@ from engine.vec2 import Vec2
 from engine.world import World
 
 __all__ = [
+    "BODY_EVENT",
     "BODY_KINDS",
     "BROAD_PHASES",
+    "BROKEN_EVENT",
     "CONTACT_RECORD",
     "EFFECTS",
+    "HIT_EVENT",
     "JOINT_RECORD",
+    "MOVED_EVENT",
     "SHAPES",
     "SHAPE_KINDS",
     "SOLVERS",
     "STAGES",
+    "TOUCH_EVENT",
     "Arbiter",
     "Body",
     "Box",
@@ -37,6 +43,7 @@ __all__ = [
     "Contact",
     "Diagnostics",
     "EffectStatus",
+    "Events",
     "Fluid",
     "Polygon",
     "RevoluteJoint",

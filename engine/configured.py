@@ -54,6 +54,8 @@ class Configured:
     accumulate_impulses = Setting[bool]()
     warm_starting = Setting[bool]()
     position_correction = Setting[bool]()
+    tell_events = Setting[bool]()
+    hit_speed = Setting[float]()
 
     @property
     def settings(self) -> Settings:

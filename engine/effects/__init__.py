@@ -15,7 +15,7 @@ from engine.effects.filters import FILTERS
 from engine.effects.magnets import MAGNETS
 from engine.effects.motion import ANGULAR_DAMPING, GRAVITY, GRAVITY_SCALE, LINEAR_DAMPING
 from engine.effects.motors import REVOLUTE_MOTORS
-from engine.effects.others import DIAGNOSTICS, PASSING, REVOLUTE
+from engine.effects.others import DIAGNOSTICS, EVENTS, PASSING, REVOLUTE
 from engine.effects.point_gravity import POINT_GRAVITY
 
 EFFECTS: tuple[Effect, ...] = (
@@ -37,6 +37,7 @@ EFFECTS: tuple[Effect, ...] = (
     REVOLUTE,
     REVOLUTE_MOTORS,
     PASSING,
+    EVENTS,
     DIAGNOSTICS,
 )
 

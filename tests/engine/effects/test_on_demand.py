@@ -27,6 +27,7 @@ ELSEWHERE = {
     "revolute joints": ("engine.joints.", "engine.solvers.soft_step.joints."),
     "revolute motors": ("engine.joints.revolute_motor.",),
     "joined without colliding": ("engine.pairs.drop_joined",),
+    "events": ("engine.happened.", "engine.touching."),
     "diagnostics": ("engine.diagnostics.",),
 }
 
