@@ -79,13 +79,29 @@ def test_a_ball_hits_once_with_the_speed_of_its_fall(solver: str, precision: str
 
 
 @pytest.mark.parametrize(("solver", "precision"), BOTH)
-def test_spin_counts_towards_the_speed(solver: str, precision: str) -> None:
-    # the end of a turning bar meets a post: w r + v, along the normal
+@pytest.mark.parametrize("turned", [0.0, 0.5 * math.pi, 2.0])
+@pytest.mark.parametrize("post_first", [True, False])
+def test_spin_counts_towards_the_speed(solver: str, precision: str, turned: float, post_first: bool) -> None:
+    # the end of a turning bar meets a post: w r + v, along the normal, whichever way the whole is turned
+    def rotated(x: float, y: float) -> tuple[float, float]:
+        return math.cos(turned) * x - math.sin(turned) * y, math.sin(turned) * x + math.cos(turned) * y
+
     world = World(tell_events=True, solver=solver, precision=precision, gravity=(0, 0))
-    world.create_body(Circle(0.1), position=(1.4, -0.155), kind="static")
-    world.create_body(Box(3, 0.1), position=(0, 0), angular_velocity=-4, velocity=(0, -0.5), friction=0)
+
+    def add_post() -> None:
+        world.create_body(Circle(0.1), position=rotated(1.4, -0.155), kind="static")
+
+    if post_first:
+        add_post()
+    world.create_body(
+        Box(3, 0.1), position=(0, 0), angle=turned, angular_velocity=-4, velocity=rotated(0, -0.5), friction=0
+    )
+    if not post_first:
+        add_post()
     (hit,) = np.concatenate([events.hit for events in told(world, 3, 1 / 512)])
-    assert (hit["nx"], hit["ny"]) == pytest.approx((0, 1), abs=0.05)
+    side = 1 if post_first else -1
+    assert (side * hit["nx"], side * hit["ny"]) == pytest.approx(rotated(0, 1), abs=0.05)
+    assert (hit["x"], hit["y"]) == pytest.approx(rotated(1.4, -0.055), abs=0.03)
     assert hit["speed"] == pytest.approx(4 * 1.4 + 0.5, rel=0.02)
 
 
