@@ -182,5 +182,6 @@ CALLED_FOR_BY = {
     "revolute joints": "`World.create_joint_revolute`",
     "revolute motors": "`motor_speed` of a revolute joint",
     "joined without colliding": "a joint with `collide_connected=False`",
+    "events": "`tell_events` of the world",
     "diagnostics": "`World.diagnostics`",
 }

@@ -57,7 +57,7 @@ def bias_factor(joint: RevoluteJoint) -> float:
     return JOINT_BIAS_FACTOR if joint.bias_factor is None else joint.bias_factor
 
 
-ON_REQUEST = frozenset({"diagnostics", "explosions"})  # no part of a step
+ON_REQUEST = frozenset({"diagnostics", "events", "explosions"})  # move nothing in a step
 
 
 def refuse_effects(world: World, known: Container[str]) -> None:
