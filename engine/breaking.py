@@ -24,6 +24,8 @@ def break_joints(state: State, settings: Settings) -> None:
     torques = np.abs(records["turn_impulse"]) * inverse_dt
     most_force, most_torque = joints["break_force"][breakable], joints["break_torque"][breakable]
     broken = ((most_force >= 0.0) & (forces > most_force)) | ((most_torque >= 0.0) & (torques > most_torque))
-    for row in breakable[broken]:
-        state.joints.remove(int(row))
+    for place in np.flatnonzero(broken):
+        record = records[place]
+        state.happened.note_broken(record["joint"], record["body1"], record["body2"], forces[place], torques[place])
+        state.joints.remove(int(breakable[place]))
         state.stale = True

@@ -55,6 +55,8 @@ class Configured:
     accumulate_impulses = Setting[bool]()
     warm_starting = Setting[bool]()
     position_correction = Setting[bool]()
+    tell_events = Setting[bool]()
+    hit_speed = Setting[float]()
 
     @property
     def settings(self) -> Settings:

@@ -75,6 +75,13 @@ COINCIDENT = 1e-15
 """Centres of circles closer than this are one point [m]: the normal is straight up. Zero: in single precision the
 square of a distance below 1e-19 m loses its digits, and the normal its unit length."""
 
+# --- events ---------------------------------------------------------------------------------------------------------
+
+PARTING_DISTANCE = 0.005
+"""Shapes that touched do so until they are this far apart [m], or until nothing presses if that is later: a contact
+that was seen ahead may. Zero: pairs in a heap begin and end all the time. Larger: more low bounces are told as one
+touch; here those below sqrt(2 g 0.005 m), 0.3 m/s, are."""
+
 # --- broad phase --------------------------------------------------------------------------------------------------
 
 BOUNDS_MARGIN = 1e-3
@@ -103,6 +110,9 @@ FRICTION = 0.2
 RESTITUTION_THRESHOLD = 1.0
 """Shapes that meet slower than this do not bounce [m/s]. Zero: resting bodies tremble for ever; larger: a ball stops
 while one still sees it move."""
+
+HIT_SPEED = 1.0
+"""Shapes that begin to touch faster than this hit each other [m/s]. Box2D v3's value: below it nobody hears them."""
 
 MAX_ITERATIONS = 10_000
 """Most passes that may be asked for: a step that lasts minutes is a typing error."""

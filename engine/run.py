@@ -146,7 +146,13 @@ def _joined(lists: list[np.ndarray], dtype: np.dtype) -> np.ndarray:
 def can_repeat(state: State, settings: Settings) -> bool:
     """Whether steps of this world, as it is prepared, can stay in compiled code."""
     return (
-        not (numba.config.DISABLE_JIT or state.pairs_are_stale or state.colours_are_stale or state.forces)
+        not (
+            numba.config.DISABLE_JIT
+            or state.pairs_are_stale
+            or state.colours_are_stale
+            or state.forces
+            or state.happened.on
+        )
         and state.prepared_carried == 1.0
         and "breaking joints" not in state.effects
         and SOLVERS[settings.solver] is SOFT_STEP

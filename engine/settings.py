@@ -58,8 +58,8 @@ def choice(default: str, choices: Any, hint: str, solvers: Any = ()) -> Any:
     return field(default=default, metadata={"kind": "choice", **about})
 
 
-def switch(hint: str, solvers: Any = ()) -> Any:
-    return field(default=True, metadata={"kind": "switch", "hint": hint, "solvers": solvers})
+def switch(hint: str, solvers: Any = (), default: bool = True) -> Any:
+    return field(default=default, metadata={"kind": "switch", "hint": hint, "solvers": solvers})
 
 
 def whole(most: int, hint: str, solvers: Any = ()) -> Any:
@@ -117,6 +117,10 @@ class Settings:
     accumulate_impulses: bool = switch("clamp the sum of a contact's impulses, not each alone", TALK)
     warm_starting: bool = switch("start from the impulses of the step before")
     position_correction: bool = switch("push bodies apart that have sunk into each other")
+    tell_events: bool = switch("tell what begins, ends, hits and moves in each step", default=False)
+    hit_speed: float = number(
+        constants.HIT_SPEED, 0.0, 20.0, 0.1, "m/s", "shapes that begin to touch faster hit each other"
+    )
 
     def __post_init__(self) -> None:
         solver = SOLVERS[validate.choice("solver", self.solver, SOLVERS)]

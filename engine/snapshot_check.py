@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from itertools import pairwise
 
 import numpy as np
 
@@ -20,8 +21,10 @@ from engine.shapes.polygon import POLYGON
 from engine.shapes.segment import SEGMENT
 from engine.state import State
 from engine.tables import BODY_KINDS, HELD, HULL_POINTS, JOINT_KINDS
+from engine.touching import PAIR
 
 MAY_BE_INFINITE = ("mass", "inertia")  # of static bodies
+STORAGE_OF = {"shape": "shapes", "body": "bodies"}  # what the columns of a pair are serials of
 SIZES = {  # what a shape cannot be without
     BOX: ("half_x", "half_y"), CIRCLE: ("radius",), CAPSULE: ("half_x", "radius"), SEGMENT: ("half_x",),
     CHAIN: ("half_x",),
@@ -36,7 +39,7 @@ def check_tables(settings: Settings, tables: Mapping[str, np.ndarray]) -> None:
         f"{name}.{column}": np.empty(0, about.dtype)
         for name, storage in state.storages().items()
         for column, about in storage.possible.items()
-    }
+    } | {"touching": np.empty(0, PAIR)}
     for name in tables:
         validate.choice("snapshot table", name, {**expected, **optional})
     for name, example in {**expected, **{n: e for n, e in optional.items() if n in tables}}.items():
@@ -44,7 +47,7 @@ def check_tables(settings: Settings, tables: Mapping[str, np.ndarray]) -> None:
         if table is None or table.dtype != example.dtype or table.ndim != example.ndim:
             raise refuse(name, f"there, of {example.ndim} dimensions and the fields of this version")
         check_finite(name, table)
-    for name in optional.keys() & tables.keys():
+    for name in (optional.keys() & tables.keys()) - {"touching"}:
         storage = name.partition(".")[0]
         if len(tables[name]) != len(tables[f"{storage}.{storage}"]):
             raise refuse(name, f"as long as {storage}.{storage}")
@@ -53,6 +56,7 @@ def check_tables(settings: Settings, tables: Mapping[str, np.ndarray]) -> None:
     check_joints(tables)
     check_arbiters(tables)
     check_fluids(tables)
+    check_touching(tables)
     for name in ("step_count", "time", "last_dt", "explosions"):
         if tables[name] < 0:
             raise refuse(name, ">= 0")
@@ -198,6 +202,17 @@ def check_arbiters(tables: Mapping[str, np.ndarray]) -> None:
     order = np.lexsort((keys[:, 1], keys[:, 0]))
     if (np.diff(order) != 1).any() or len(np.unique(keys, axis=0)) != len(keys) or (keys[:, 0] >= keys[:, 1]).any():
         raise refuse("arbiters", "in ascending order of their serials")
+
+
+def check_touching(tables: Mapping[str, np.ndarray]) -> None:
+    """Pairs whose end is still to be told stand in ascending order, and have serials that were given."""
+    pairs = tables.get("touching", np.empty(0, PAIR))
+    keys = list(zip(pairs["shape1"].tolist(), pairs["shape2"].tolist(), strict=True))
+    if any(first >= second for first, second in pairwise(keys)) or any(first >= second for first, second in keys):
+        raise refuse("touching", "of pairs in ascending order of their serials")
+    for name in PAIR.names or ():
+        if ((pairs[name] < 0) | (pairs[name] >= tables[f"{STORAGE_OF[name[:-1]]}.next_serial"])).any():
+            raise refuse("touching", f"of serials of {STORAGE_OF[name[:-1]]} that were given")
 
 
 def check_serials(storage: str, main: str, tables: Mapping[str, np.ndarray]) -> None:

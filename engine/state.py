@@ -11,6 +11,7 @@ from engine.broad_phase import BROAD_PHASES
 from engine.colouring import Layout, any_change, give_colours
 from engine.effects import BODY_PROPERTIES, EFFECTS, SHAPE_PROPERTIES
 from engine.effects.filters import drop_filtered
+from engine.happened import Happened
 from engine.joints.layout import JointLayout, joins
 from engine.mixing import RULES
 from engine.narrow_phase import COLLIDER_OF, COLLIDERS, TALK_COLLIDERS
@@ -60,6 +61,7 @@ class State:
         self.last_dt = 0.0  # of the last step [s]
         self.explosions = 0  # so far
         self.scratch: dict[str, Any] = {}  # tables that a solver makes for itself; nothing in them lasts
+        self.happened = Happened()  # events, where something calls for them
         self.forced: frozenset[str] = frozenset()  # effects whose code runs though nothing calls for them
         self.suppressed: frozenset[str] = frozenset()  # effects whose code does not run though something does
         self.gathered: dict[str, Any] = {}  # what effects read off the content, until it changes
@@ -95,6 +97,7 @@ class State:
         for storage in (self.bodies, self.shapes):
             storage.drop_idle_columns()
         self.effects = self.active(settings)
+        self.happened.switch("events" in self.effects)
         self.gathered = {}
         self.solve_plan = None
         self.addresses = {}
@@ -241,6 +244,7 @@ class State:
         }
         return {
             **saved,
+            **self.happened.save(),
             "arbiters": np.array(table.rows[touching]),
             "contacts": np.array(table.contacts[touching]),
             "step_count": np.array(self.step_count, np.int64),
@@ -263,6 +267,7 @@ class State:
         self.time = float(saved["time"])
         self.last_dt = float(saved["last_dt"])
         self.explosions = int(saved["explosions"])
+        self.happened.load(saved)
         self.forget_broad_phase()
         self.stale = True
 

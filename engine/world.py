@@ -17,6 +17,7 @@ from engine.diagnostics import Diagnostics, diagnose
 from engine.effects import EffectStatus
 from engine.effects.explosion import explode
 from engine.effects.fluid import Fluid, add_fluid
+from engine.events import Events
 from engine.joints import KINDS, Joining, Joint
 from engine.lacking import effect_statuses, refuse_lacking
 from engine.queries import rows_at
@@ -63,6 +64,7 @@ class World(Configured, Joining):
         """
         dt = self._checked(dt)
         if dt > 0.0:
+            self._state.happened.clear()
             prepare_step(self._state, self._settings, dt)
             self._finish_step(dt)
 
@@ -75,6 +77,8 @@ class World(Configured, Joining):
         """
         left = validate.whole("steps", steps, 0, MOST_STEPS)
         dt = self._checked(dt)
+        if left > 0 and dt > 0.0:
+            self._state.happened.clear()
         while left > 0 and dt > 0.0:
             prepare_step(self._state, self._settings, dt)
             done, stage = run_quietly(self._state, self._settings, left, dt)
@@ -93,6 +97,9 @@ class World(Configured, Joining):
     def _finish_step(self, dt: float, first: int = 0) -> None:
         """Takes a step that is prepared, from one of its stages on."""
         state, settings = self._state, self._settings
+        happened = state.happened
+        if happened.on:
+            happened.before_step(state)
         before = time.perf_counter()
         for name, stage in STAGES[first:]:
             stage(state, settings)
@@ -102,6 +109,8 @@ class World(Configured, Joining):
         state.step_count += 1
         state.time += dt
         state.last_dt = dt
+        if happened.on:
+            happened.after_step(state, settings.hit_speed)
 
     @property
     def threads(self) -> int:
@@ -295,6 +304,17 @@ class World(Configured, Joining):
     def joint_records(self) -> np.ndarray:
         """(J,) JOINT_RECORD: all joints as one table, in the order of creation."""
         return joint_records(self._state)
+
+    @property
+    def events(self) -> Events:
+        """What happened in the last step, or in all steps of the last `run`: engine/events.py says what is told.
+
+        Of what was destroyed, and of what woke or broke between two steps, the step after tells. ValueError unless the
+        setting tell_events is on.
+        """
+        if not self.tell_events:
+            raise validate.refuse("tell_events", False, "True before the step whose events are to be read")
+        return self._state.happened.events()
 
     def shape_records(self) -> np.ndarray:
         """(S,) SHAPE: all pieces of all shapes as one table, in the order of creation: a copy."""

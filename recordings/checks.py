@@ -8,7 +8,7 @@ import numpy as np
 
 from recordings import schema
 from recordings.schema import RecordingError
-from recordings.shot import checksum, content_checksum
+from recordings.shot import checksum, content_checksum, happened_parts
 from recordings.stored_table import StoredTable
 
 
@@ -49,5 +49,9 @@ def check_steps(
             raise RecordingError(f"{path}: damaged at step {step}")
         expected = int(numbers["checksum"][0])
         numbers["checksum"] = 0
-        if checksum(step, [*parts[:-1], numbers, content.at(step)], commands.get(step, [])) != expected:
+        happened = {kind: tables[table.path].exactly(step) for kind, table in schema.HAPPENINGS.items()}
+        if not np.isin(happened["moved"]["body"], tables[schema.ROSTER.path].at(step)["serial"]).all():
+            raise RecordingError(f"{path}: damaged at step {step}")
+        own = [*parts[:-1], numbers, content.at(step), *happened_parts(happened)]
+        if checksum(step, own, commands.get(step, [])) != expected:
             raise RecordingError(f"{path}: damaged at step {step}")

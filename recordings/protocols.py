@@ -7,6 +7,8 @@ from typing import Any, Protocol
 
 import numpy as np
 
+from engine import Events
+
 
 class DiagnosticsLike(Protocol):
     """engine.Diagnostics, by structure."""
@@ -63,6 +65,8 @@ class StateLike(Protocol):
     def contacts(self) -> np.ndarray: ...  # (C,) CONTACT_RECORD
     @property
     def joints(self) -> np.ndarray: ...  # (J,) JOINT_RECORD
+    @property
+    def events(self) -> Events: ...  # of this step
 
 
 class FrameLike(StateLike, Protocol):

@@ -32,7 +32,8 @@ def read(path: Path | str) -> Recording:
     start, snapshot = parse_start(path, chunks[schema.START])
     commands = _commands(path, chunks[schema.COMMANDS])
     on_change = (schema.ROSTER_1,) if start["schema"] == 1 else schema.ON_CHANGE
-    tables = {table.path: gather(path, table, chunks[table.path]) for table in (*schema.EVERY_STEP, *on_change)}
+    every = (*schema.EVERY_STEP, *on_change, *schema.HAPPENINGS.values())
+    tables = {table.path: gather(path, table, chunks[table.path]) for table in every}
     stored_steps = _whole_steps(path, tables, start["step"])
     closed = _is_closed(path, chunks[schema.END], stored_steps)
     if start["schema"] == 1:
@@ -100,7 +101,7 @@ def _whole_steps(path: Path, tables: dict[str, StoredTable], start_step: int) ->
     for table in schema.EVERY_STEP:
         tables[table.path] = tables[table.path].first(min(counts))
     steps = tables[schema.STEPS.path].steps
-    for table in schema.ON_CHANGE:
+    for table in (*schema.ON_CHANGE, *schema.HAPPENINGS.values()):
         if table.path in tables:
             begun = tables[table.path]
             tables[table.path] = begun.first(int(np.searchsorted(begun.steps, steps[-1], "right")) if len(steps) else 0)

@@ -35,6 +35,7 @@ NORMAL: Colour = (240, 130, 150)
 BOUNDS: Colour = (92, 128, 122)
 NORMAL_IMPULSE: Colour = (255, 196, 84)
 FRICTION_IMPULSE: Colour = (98, 218, 190)
+HIT: Colour = (255, 236, 160)
 JOINT: Colour = (196, 160, 255)
 HAND: Colour = (255, 255, 255)
 

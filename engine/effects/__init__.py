@@ -15,7 +15,7 @@ from engine.effects.filters import FILTERS
 from engine.effects.joints import BREAKING, CHAINS, JOINT_LIMITS, JOINT_MOTORS, JOINT_SPRINGS, KINDS, PASSING
 from engine.effects.magnets import MAGNETS
 from engine.effects.motion import ANGULAR_DAMPING, GRAVITY, GRAVITY_SCALE, LINEAR_DAMPING
-from engine.effects.others import DIAGNOSTICS
+from engine.effects.others import DIAGNOSTICS, EVENTS
 from engine.effects.point_gravity import POINT_GRAVITY
 
 EFFECTS: tuple[Effect, ...] = (
@@ -41,6 +41,7 @@ EFFECTS: tuple[Effect, ...] = (
     CHAINS,
     BREAKING,
     PASSING,
+    EVENTS,
     DIAGNOSTICS,
 )
 

@@ -187,5 +187,6 @@ CALLED_FOR_BY = {
     "chains": "chains, bridges and the like, by what they are made of; or `World.joint_solving`",
     "breaking joints": "`break_force`, `break_torque` of a joint",
     "joined without colliding": "a joint with `collide_connected=False`",
+    "events": "`tell_events` of the world",
     "diagnostics": "`World.diagnostics`",
 }

@@ -119,6 +119,7 @@ class RecordedFrames:
             corners=state.corners,
             contacts=state.contacts,
             joints=state.joints,
+            events=state.events,
             diagnostics=Diagnostics(
                 float(numbers["kinetic_energy"]),
                 float(numbers["potential_energy"]),

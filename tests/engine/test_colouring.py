@@ -22,7 +22,7 @@ from engine.colouring import (
     count_colours,
     give_colours,
 )
-from engine.tables import arbiter_dtype, empty, motion_dtype, joint_dtype
+from engine.tables import arbiter_dtype, empty, joint_dtype, motion_dtype
 from tests.engine.worlds import DT, busy, floor, gathering, run
 
 plain_too = pytest.mark.kernel

@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 
 import recordings
-from engine import CONTACT_RECORD, JOINT_RECORD, SHAPE_KINDS, Diagnostics
+from engine import CONTACT_RECORD, JOINT_RECORD, SHAPE_KINDS, Diagnostics, Events
+from engine.events import NOTHING
 
 DT = 1 / 60  # [s]
 BOX, CIRCLE, CAPSULE, POLYGON, SEGMENT, CHAIN = range(6)
@@ -60,6 +61,7 @@ class Frame:
     diagnostics: Diagnostics = DIAGNOSTICS
     stage_ms: dict[str, float] = field(default_factory=dict)
     commands: tuple[dict[str, Any], ...] = ()
+    events: Events = NOTHING
 
 
 def random_frame(rng: np.random.Generator, step: int, bodies: int = 5, contacts: int = 4, joints: int = 2) -> Frame:

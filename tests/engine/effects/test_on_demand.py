@@ -31,6 +31,7 @@ ELSEWHERE = {
     "joint springs": ("engine.solvers.soft_step.joints.free.",),
     "chains": ("engine.solvers.soft_step.direct.",),
     "joined without colliding": ("engine.pairs.drop_joined",),
+    "events": ("engine.happened.", "engine.touching."),
     "diagnostics": ("engine.diagnostics.",),
 }
 
