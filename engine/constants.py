@@ -61,6 +61,10 @@ RECYCLING_ROLL = 5e-4
 """Nor is it kept when a round shape has turned so far that the point that touched is this much off the outline [m]: a
 tenth of a usual overlap. Larger: balls that roll bob up and down, by 4 cm at a radius of 2 m without this limit."""
 
+MAXIMUM_SPEED = 4000.0
+"""Fastest that anything makes a body [m/s]: ten times the speed of sound. Lower: a bullet stops short of its speed;
+without: what blows up is a number that is not finite a step later."""
+
 MAX_SUBSTEPS = 1000
 """Most substeps that may be asked for."""
 
@@ -74,6 +78,21 @@ half width. Without: two equally good faces alternate from step to step and thei
 COINCIDENT = 1e-15
 """Centres of circles closer than this are one point [m]: the normal is straight up. Zero: in single precision the
 square of a distance below 1e-19 m loses its digits, and the normal its unit length."""
+
+# --- continuous collision -------------------------------------------------------------------------------------------
+
+CONTINUOUS_WAY = 0.5
+"""Part of the half width of its thinnest shape that a body may go in a step, beyond the speculative distance, before it
+counts as fast. Near 1: what ends in the middle of a wall comes out on either side; 0: more bodies are looked at."""
+
+CONTINUOUS_DEPTH = 0.005
+CONTINUOUS_SHARE = 0.25
+"""What is fast stops where it would overlap by more than this [m], or by more than this part of the thinner half width.
+Smaller: bodies that slide stop at the seams of a floor, into which they sink a little; larger: corners go through what
+is thin."""
+
+CONTINUOUS_NEAR = 0.02
+"""Part of that depth by which an impact may be found too early. Zero: what turns takes many advances."""
 
 # --- broad phase --------------------------------------------------------------------------------------------------
 

@@ -171,6 +171,7 @@ def write_step(step: np.ndarray, settings: Settings, dt: float, carried: float) 
         "carried": carried / n,
         "push_out_speed": settings.push_out_speed,
         "restitution_threshold": settings.restitution_threshold,
+        "maximum_speed": settings.maximum_speed,
     }
     soft = stiffness(settings, dt)
     values |= dict(zip(SOFTNESS_FIELDS, (*soft.contact, *soft.static, *soft.joint), strict=True))

@@ -211,5 +211,5 @@ SEQUENTIAL_IMPULSES = Solver(
     update_positions,
     iterations=10,
     talk_clipping=True,
-    lacks=("restitution", "rolling resistance", "conveyor"),
+    lacks=("restitution", "rolling resistance", "conveyor", "bullets"),
 )

@@ -1,0 +1,67 @@
+"""When a shape on its way would go through another, and where it stops.
+
+Outlines may overlap a little without harm: contacts do, and a box that slides over a floor of many pieces is a little
+deeper than the next one's edge. So an impact is when they overlap by more than a depth that is small against what is
+thinner; and a body that came from outside is then put back to where they touched. Outlines that overlap by more already
+may sink a little further, and only axes on the side where they are now count: else the two sides of a thin wall could
+be taken for each other.
+"""
+
+from __future__ import annotations
+
+from engine.constants import CONTINUOUS_DEPTH, CONTINUOUS_NEAR, CONTINUOUS_SHARE
+from engine.continuous.impact import NEVER, Task, impact_time, separation_at
+from engine.continuous.outlines import NOW_X, NOW_Y, half_width, load_outline, turn_outline
+from engine.jit import kernel
+from engine.shapes.chain import CHAIN
+from engine.vec2 import Vec2, cross
+
+
+@kernel
+def depth_of(shape1, shape2, hulls):
+    """By how much two shapes may overlap before one is held to go through the other [m]."""
+    half1, half2 = half_width(shape1, hulls), half_width(shape2, hulls)
+    thinner = min(half1, half2) if min(half1, half2) > 0.0 else max(half1, half2)
+    return min(CONTINUOUS_DEPTH, CONTINUOUS_SHARE * thinner)
+
+
+@kernel
+def is_behind(piece, piece_center, outline, count, center):
+    """Whether the middle of an outline lies behind a piece of a chain, which is then nothing to it."""
+    x, y = 0.0, 0.0
+    for k in range(count):
+        x += outline[k, NOW_X]
+        y += outline[k, NOW_Y]
+    middle = center + Vec2(x / count, y / count)
+    start = piece_center + Vec2(piece[0, NOW_X], piece[0, NOW_Y])
+    along = Vec2(piece[1, NOW_X] - piece[0, NOW_X], piece[1, NOW_Y] - piece[0, NOW_Y])
+    return cross(along, middle - start) < 0.0
+
+
+@kernel
+def meeting_time(shape_a, body_a, sweep_a, shape_b, body_b, sweep_b, hulls, scratch, end):
+    """When shape A, or B, must stop so that neither goes through the other, before `end`; else NEVER.
+
+    scratch (3, 8, 5): room for two outlines and the corners of one.
+    """
+    a, b, corners = scratch[0], scratch[1], scratch[2]
+    count_a = load_outline(shape_a, hulls, body_a, corners, a)
+    count_b = load_outline(shape_b, hulls, body_b, corners, b)
+    center_a = turn_outline(a, count_a, sweep_a, 0.0)
+    center_b = turn_outline(b, count_b, sweep_b, 0.0)
+    if shape_b.kind == CHAIN and is_behind(b, center_b, a, count_a, center_a):
+        return NEVER
+    if shape_a.kind == CHAIN and is_behind(a, center_a, b, count_b, center_b):
+        return NEVER
+    radii = shape_a.radius + shape_b.radius
+    now = separation_at(0.0, radii, a, count_a, sweep_a, b, count_b, sweep_b)
+    depth = depth_of(shape_a, shape_b, hulls)
+    near = CONTINUOUS_NEAR * depth
+    side, goal = Vec2(0.0, 0.0), -depth
+    if now.separation <= -depth:
+        side, goal = now.normal, now.separation - 0.5 * depth
+    time = impact_time(Task(radii, goal, near, side), a, count_a, sweep_a, b, count_b, sweep_b, end)
+    if time < NEVER and now.separation > depth:
+        touch = impact_time(Task(radii, 0.0, near, side), a, count_a, sweep_a, b, count_b, sweep_b, time)
+        return min(touch, time)
+    return time
