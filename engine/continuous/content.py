@@ -6,10 +6,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from engine.constants import CONTINUOUS_WAY
+from engine.constants import CONTINUOUS_TURN, CONTINUOUS_WAY
 from engine.continuous.fast import SLOWEST, measure_bodies
 from engine.continuous.stops import (
     ENCOUNTER,
+    find_contacts_anew,
     find_encounters,
     hold_back,
     stop_at_each_other,
@@ -101,7 +102,8 @@ def stop_fast(state: State, content: Content, count: int) -> None:
         stop_at_each_other(pairs, *things, c.until, carriers, scratch)
         met = np.concatenate([shapes["body"][pairs["shape1"]], shapes["body"][pairs["shape2"]]])
         stopping = np.concatenate([fast, np.setdiff1d(met, fast)])
-    hold_back(stopping, bodies, moved, c.until, carriers)
+    find_contacts_anew(state.arbiters.rows, state.arbiters.count, c.until)
+    hold_back(stopping, bodies, moved, c.until, carriers, CONTINUOUS_TURN / float(state.steps["h"][0]))
     c.carriers[fast] = -1
 
 

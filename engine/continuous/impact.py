@@ -2,7 +2,8 @@
 
 Along a fixed axis a corner that turns with its body moves by a speed that is known and changes by no more than its
 distance from the centre times the square of the angular velocity. So two outlines that an axis keeps apart now are kept
-apart by it at least until the first root of a parabola, for the worst pair of corners. Of all axes that could matter
+apart by it at least until the first root of a parabola, for the worst pair of corners; and until the circles meet in
+which they turn, however fast they do. Of all axes that could matter
 (the normals of faces, and the way from the nearest point to the nearest point) the one that lasts longest says how far
 time may go on; what slides along a floor is kept apart by the floor's normal for the whole step. It never goes too far,
 and what does not turn is found at once.
@@ -15,7 +16,7 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from engine.continuous.outlines import AWAY, NOW_X, NOW_Y, reach_of, turn_outline
+from engine.continuous.outlines import AWAY, NOW_X, NOW_Y, turn_outline
 from engine.jit import kernel
 from engine.lanes import sqrt
 from engine.vec2 import Vec2, dot
@@ -48,6 +49,8 @@ class Task(NamedTuple):
     depth: Any  # separation at which they are said to meet [m]
     near: Any  # by how much of the way an impact may be found too early [m]
     side: Vec2  # only axes that do not point against this; zero: all do
+    reach_a: Any  # radius of the circle in which the corners of A turn [m]
+    reach_b: Any
 
 
 @kernel
@@ -84,6 +87,8 @@ def try_axis(best, normal, task, a, count_a, b, count_b, apart, approach, turn_a
         return Axis(normal, separation, 0.0) if separation > best.separation and best.lasts == 0.0 else best
     rest = between - task.radii - task.depth
     speed = dot(normal, approach)
+    in_circles = rest - (task.reach_a if turn_a != 0.0 else -low) - (task.reach_b if turn_b != 0.0 else high)
+    least = max(best.lasts, first_root(in_circles, speed, 0.0) if in_circles > 0.0 else 0.0)
     lasts = FOREVER
     for k in range(count_a):
         height, drift, bend = low, 0.0, 0.0
@@ -100,8 +105,9 @@ def try_axis(best, normal, task, a, count_a, b, count_b, apart, approach, turn_a
             lasts = min(lasts, first_root(rest + height - top, speed + drift - rise, bend + curve))
             if turn_b == 0.0:
                 break
-        if turn_a == 0.0 or lasts <= best.lasts:
+        if turn_a == 0.0 or lasts <= least:
             break
+    lasts = max(lasts, least)
     return Axis(normal, separation, lasts) if lasts > best.lasts else best
 
 
@@ -179,7 +185,7 @@ def separation_at(time, radii, a, count_a, sweep_a, b, count_b, sweep_b):
     """The axis along which two outlines are furthest apart, or overlap least, at a time."""
     apart = turn_outline(a, count_a, sweep_a, time) - turn_outline(b, count_b, sweep_b, time)
     nothing = Vec2(0.0, 0.0)
-    task = Task(radii, FOREVER, 0.0, nothing)  # no axis does, so it is the least overlap
+    task = Task(radii, FOREVER, 0.0, nothing, 0.0, 0.0)  # no axis does, so it is the least overlap
     return best_axis(task, a, count_a, b, count_b, apart, nothing, 0.0, 0.0)
 
 
@@ -187,7 +193,7 @@ def separation_at(time, radii, a, count_a, sweep_a, b, count_b, sweep_b):
 def impact_time(task, a, count_a, sweep_a, b, count_b, sweep_b, end):
     """When two outlines first come as near as `task.depth`, before `end`; NEVER if they do not. Never too late."""
     swift = abs(sweep_a.way.x - sweep_b.way.x) + abs(sweep_a.way.y - sweep_b.way.y)
-    swift += abs(sweep_a.turn) * reach_of(a, count_a) + abs(sweep_b.turn) * reach_of(b, count_b)
+    swift += abs(sweep_a.turn) * task.reach_a + abs(sweep_b.turn) * task.reach_b
     time = 0.0
     nothing = Vec2(0.0, 0.0)
     for _ in range(MOST_STEPS):

@@ -2,16 +2,16 @@
 
 Outlines may overlap a little without harm: contacts do, and a box that slides over a floor of many pieces is a little
 deeper than the next one's edge. So an impact is when they overlap by more than a depth that is small against what is
-thinner; and a body that came from outside is then put back to where they touched. Outlines that overlap by more already
-may sink a little further, and only axes on the side where they are now count: else the two sides of a thin wall could
-be taken for each other.
+thinner; and a body that came from outside is then put back to where they touched. Outlines that overlap already may
+sink further by half of that: who stops on the spot, as it is, would never be seen to approach, and stop for ever. Then
+only axes on the side where they are now count: else the two sides of a thin wall could be taken for each other.
 """
 
 from __future__ import annotations
 
 from engine.constants import CONTINUOUS_DEPTH, CONTINUOUS_NEAR, CONTINUOUS_SHARE
 from engine.continuous.impact import NEVER, Task, impact_time, separation_at
-from engine.continuous.outlines import NOW_X, NOW_Y, half_width, load_outline, turn_outline
+from engine.continuous.outlines import NOW_X, NOW_Y, half_width, load_outline, reach_of, turn_outline
 from engine.jit import kernel
 from engine.shapes.chain import CHAIN
 from engine.vec2 import Vec2, cross
@@ -58,10 +58,13 @@ def meeting_time(shape_a, body_a, sweep_a, shape_b, body_b, sweep_b, hulls, scra
     depth = depth_of(shape_a, shape_b, hulls)
     near = CONTINUOUS_NEAR * depth
     side, goal = Vec2(0.0, 0.0), -depth
-    if now.separation <= -depth:
+    if now.separation < -0.5 * depth:
         side, goal = now.normal, now.separation - 0.5 * depth
-    time = impact_time(Task(radii, goal, near, side), a, count_a, sweep_a, b, count_b, sweep_b, end)
+    reach_a, reach_b = reach_of(a, count_a), reach_of(b, count_b)
+    through = Task(radii, goal, near, side, reach_a, reach_b)
+    time = impact_time(through, a, count_a, sweep_a, b, count_b, sweep_b, end)
     if time < NEVER and now.separation > depth:
-        touch = impact_time(Task(radii, 0.0, near, side), a, count_a, sweep_a, b, count_b, sweep_b, time)
+        touching = Task(radii, 0.0, near, side, reach_a, reach_b)
+        touch = impact_time(touching, a, count_a, sweep_a, b, count_b, sweep_b, time)
         return min(touch, time)
     return time

@@ -178,14 +178,26 @@ def stop_at_each_other(encounters, shapes, hulls, bodies, movers, until, carrier
 
 
 @kernel
-def hold_back(rows, bodies, movers, until, carriers):
-    """Shortens the ways of bodies that stop; one that a kinematic body stopped goes along with it from then on."""
+def find_contacts_anew(arbiters, count, until):
+    """Lets the next step keep no contact of a body that stops: it may spin fast, and touch elsewhere at once."""
+    for index in range(count):
+        if until[arbiters[index].body1] < 1.0 or until[arbiters[index].body2] < 1.0:
+            arbiters[index].recyclable = 0
+
+
+@kernel
+def hold_back(rows, bodies, movers, until, carriers, most_spin):
+    """Shortens the ways of bodies that stop; one that a kinematic body stopped goes along with it from then on.
+
+    most_spin [rad/s]: faster contacts cannot follow a corner, and what spins on the spot would sink in.
+    """
     for row in rows:
         time = until[row]
         if time < 1.0:
             mover = movers[row]
             mover.dx, mover.dy = np.float64(mover.dx) * time, np.float64(mover.dy) * time
             mover.turned = np.float64(mover.turned) * time
+            mover.w = max(-most_spin, min(most_spin, np.float64(mover.w)))
             if carriers is not None and carriers[row] >= 0:
                 carry(bodies[row], mover, bodies[carriers[row]], movers[carriers[row]], time)
         until[row] = 1.0
