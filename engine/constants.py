@@ -91,10 +91,6 @@ CONTINUOUS_SHARE = 0.25
 Smaller: bodies that slide stop at the seams of a floor, into which they sink a little; larger: corners go through what
 is thin."""
 
-CONTINUOUS_TURN = np.pi / 2.0
-"""What has stopped spins on by no more than this in a substep [rad]. Larger: contacts, whose arms turn by straight
-pieces, lose its corners, which grind into walls; smaller: rods that hit something lose spin that they should keep."""
-
 CONTINUOUS_NEAR = 0.02
 """Part of that depth by which an impact may be found too early. Zero: what turns takes many advances."""
 

@@ -6,13 +6,14 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from engine.constants import CONTINUOUS_TURN, CONTINUOUS_WAY
+from engine.constants import CONTINUOUS_WAY
 from engine.continuous.fast import SLOWEST, measure_bodies
 from engine.continuous.stops import (
     ENCOUNTER,
     find_contacts_anew,
     find_encounters,
     hold_back,
+    part_sunk,
     stop_at_each_other,
     stop_at_fixed,
     stop_at_kinematic,
@@ -39,6 +40,9 @@ class Content(NamedTuple):
     kinematic: np.ndarray  # rows of kinematic shapes
     dynamic: np.ndarray  # rows of dynamic shapes
     until: np.ndarray  # (B,) when each body stops; 1 outside of a sweep
+    sunk: (
+        np.ndarray
+    )  # (B, 2) int64: which two shapes overlapped already and keep it from going on; -1 outside of a sweep
     carriers: np.ndarray  # (B,) int64: the kinematic body that carries it on; -1
     filters: tuple[Any, Any, Any, Any]  # joined, category, mask, group: None where not called for
 
@@ -70,7 +74,8 @@ def read_content(state: State) -> Content:
     return Content(
         slowest, np.empty(len(state.dynamic), np.int64), first_shapes, shape_rows, reaches,
         np.flatnonzero(state.groups == STATIC_GROUP), order[state.groups == KINEMATIC_GROUP],
-        order[state.groups == DYNAMIC_GROUP], np.ones(len(bodies)), np.full(len(bodies), -1),
+        order[state.groups == DYNAMIC_GROUP], np.ones(len(bodies)), np.full((len(bodies), 2), -1),
+        np.full(len(bodies), -1),
         (state.joined, category, mask, group),
     )  # fmt: skip
 
@@ -86,24 +91,25 @@ def stop_fast(state: State, content: Content, count: int) -> None:
     if len(c.fixed):
         stop_at_fixed(
             fast, *of_shapes, c.fixed, state.shapes.order, state.bounds, *things, COLLIDER_OF, *c.filters, c.until,
-            scratch,
+            c.sunk, scratch,
         )  # fmt: skip
     carriers: Any = None
     if len(c.kinematic):
         carriers = c.carriers
         stop_at_kinematic(
-            fast, *of_shapes, c.kinematic, *things, COLLIDER_OF, *c.filters, c.until, carriers, scratch
+            fast, *of_shapes, c.kinematic, *things, COLLIDER_OF, *c.filters, c.until, c.sunk, carriers, scratch
         )  # fmt: skip
     stopping = fast
     if "bullets" in state.effects:
         hurry = np.zeros(len(bodies), np.bool_)
         hurry[fast] = True
         pairs = encounters_of(state, c, fast, hurry)
-        stop_at_each_other(pairs, *things, c.until, carriers, scratch)
+        stop_at_each_other(pairs, *things, c.until, c.sunk, carriers, scratch)
         met = np.concatenate([shapes["body"][pairs["shape1"]], shapes["body"][pairs["shape2"]]])
         stopping = np.concatenate([fast, np.setdiff1d(met, fast)])
+    part_sunk(stopping, *things, state.bodies.tables["motions"], c.until, c.sunk, scratch)
     find_contacts_anew(state.arbiters.rows, state.arbiters.count, c.until)
-    hold_back(stopping, bodies, moved, c.until, carriers, CONTINUOUS_TURN / float(state.steps["h"][0]))
+    hold_back(stopping, bodies, moved, c.until, carriers)
     c.carriers[fast] = -1
 
 

@@ -181,11 +181,11 @@ def best_axis(task, a, count_a, b, count_b, apart, approach, turn_a, turn_b):
 
 
 @kernel
-def separation_at(time, radii, a, count_a, sweep_a, b, count_b, sweep_b):
-    """The axis along which two outlines are furthest apart, or overlap least, at a time."""
+def separation_at(time, radii, side, a, count_a, sweep_a, b, count_b, sweep_b):
+    """The axis along which two outlines are furthest apart, or overlap least, at a time; side: as in Task."""
     apart = turn_outline(a, count_a, sweep_a, time) - turn_outline(b, count_b, sweep_b, time)
     nothing = Vec2(0.0, 0.0)
-    task = Task(radii, FOREVER, 0.0, nothing, 0.0, 0.0)  # no axis does, so it is the least overlap
+    task = Task(radii, FOREVER, 0.0, side, 0.0, 0.0)  # no axis does, so it is the least overlap
     return best_axis(task, a, count_a, b, count_b, apart, nothing, 0.0, 0.0)
 
 

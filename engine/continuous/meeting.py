@@ -9,12 +9,16 @@ only axes on the side where they are now count: else the two sides of a thin wal
 
 from __future__ import annotations
 
+from typing import Any, NamedTuple
+
 from engine.constants import CONTINUOUS_DEPTH, CONTINUOUS_NEAR, CONTINUOUS_SHARE
 from engine.continuous.impact import NEVER, Task, impact_time, separation_at
 from engine.continuous.outlines import NOW_X, NOW_Y, half_width, load_outline, reach_of, turn_outline
 from engine.jit import kernel
 from engine.shapes.chain import CHAIN
 from engine.vec2 import Vec2, cross
+
+EITHER = Vec2(0.0, 0.0)  # all axes count, on whichever side
 
 
 @kernel
@@ -38,33 +42,37 @@ def is_behind(piece, piece_center, outline, count, center):
     return cross(along, middle - start) < 0.0
 
 
-@kernel
-def meeting_time(shape_a, body_a, sweep_a, shape_b, body_b, sweep_b, hulls, scratch, end):
-    """When shape A, or B, must stop so that neither goes through the other, before `end`; else NEVER.
+class Stop(NamedTuple):
+    """When two shapes must stop so that neither goes through the other."""
 
-    scratch (3, 8, 5): room for two outlines and the corners of one.
-    """
+    time: Any  # fraction of the step; NEVER
+    sunk: Any  # whether they overlapped as the step began, and contacts did not keep them from sinking further
+
+
+@kernel
+def find_stop(shape_a, body_a, sweep_a, shape_b, body_b, sweep_b, hulls, scratch, end):
+    """When shape A, or B, must stop, before `end`. scratch (3, 8, 5): room for two outlines and the corners of one."""
     a, b, corners = scratch[0], scratch[1], scratch[2]
     count_a = load_outline(shape_a, hulls, body_a, corners, a)
     count_b = load_outline(shape_b, hulls, body_b, corners, b)
     center_a = turn_outline(a, count_a, sweep_a, 0.0)
     center_b = turn_outline(b, count_b, sweep_b, 0.0)
     if shape_b.kind == CHAIN and is_behind(b, center_b, a, count_a, center_a):
-        return NEVER
+        return Stop(NEVER, False)
     if shape_a.kind == CHAIN and is_behind(a, center_a, b, count_b, center_b):
-        return NEVER
+        return Stop(NEVER, False)
     radii = shape_a.radius + shape_b.radius
-    now = separation_at(0.0, radii, a, count_a, sweep_a, b, count_b, sweep_b)
+    now = separation_at(0.0, radii, EITHER, a, count_a, sweep_a, b, count_b, sweep_b)
     depth = depth_of(shape_a, shape_b, hulls)
     near = CONTINUOUS_NEAR * depth
-    side, goal = Vec2(0.0, 0.0), -depth
-    if now.separation < -0.5 * depth:
-        side, goal = now.normal, now.separation - 0.5 * depth
+    sunk = now.separation < -0.5 * depth
+    side = now.normal if sunk else EITHER
+    goal = now.separation - 0.5 * depth if sunk else -depth
     reach_a, reach_b = reach_of(a, count_a), reach_of(b, count_b)
     through = Task(radii, goal, near, side, reach_a, reach_b)
     time = impact_time(through, a, count_a, sweep_a, b, count_b, sweep_b, end)
     if time < NEVER and now.separation > depth:
         touching = Task(radii, 0.0, near, side, reach_a, reach_b)
         touch = impact_time(touching, a, count_a, sweep_a, b, count_b, sweep_b, time)
-        return min(touch, time)
-    return time
+        time = min(touch, time)
+    return Stop(time, sunk)

@@ -7,8 +7,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from engine.continuous.meeting import meeting_time
+from engine.continuous.meeting import find_stop
 from engine.continuous.outlines import sweep_of
+from engine.continuous.parting import part
 from engine.effects.filters import may_meet
 from engine.jit import kernel
 from engine.pairs import is_listed, may_touch
@@ -21,6 +22,7 @@ ENCOUNTER = np.dtype(
     [
         ("shape1", np.int64),  # rows of two shapes that may meet on their ways
         ("shape2", np.int64),
+        ("sunk", np.int64),  # 1: they overlap already
         ("time", np.float64),  # when one must stop, as long as neither has stopped before; 2: never, 3: they have
     ]
 )
@@ -51,19 +53,25 @@ def may_collide(row1, row2, shapes, bodies, colliders, joined, category, mask, g
 
 
 @kernel
-def time_between(row1, row2, shapes, hulls, bodies, movers, until, scratch, end):
+def stop_of(row1, row2, shapes, hulls, bodies, movers, until, scratch, end):
     """When one of two shapes must stop, before `end`."""
     shape1, shape2 = shapes[row1], shapes[row2]
     body1, body2 = bodies[shape1.body], bodies[shape2.body]
     sweep1 = sweep_of(body1, movers[shape1.body], until[shape1.body])
     sweep2 = sweep_of(body2, movers[shape2.body], until[shape2.body])
-    return meeting_time(shape1, body1, sweep1, shape2, body2, sweep2, hulls, scratch, end)
+    return find_stop(shape1, body1, sweep1, shape2, body2, sweep2, hulls, scratch, end)
+
+
+@kernel
+def note(sunk, row, stop, own, other):
+    """Remembers which shapes keep a body, where contacts did not; sunk (B, 2): rows of shapes, -1 for none."""
+    sunk[row, 0], sunk[row, 1] = (own, other) if stop.sunk else (-1, -1)
 
 
 @kernel
 def stop_at_fixed(
     fast, first_shapes, shape_rows, reaches, ranks, order, bounds, shapes, hulls, bodies, movers, colliders, joined,
-    category, mask, group, until, scratch,
+    category, mask, group, until, sunk, scratch,
 ):  # fmt: skip
     """Stops fast bodies at shapes that do not move: ranks, of which `bounds` (4, S) has the boxes."""
     path = np.empty(4)
@@ -77,16 +85,16 @@ def stop_at_fixed(
                     if bounds[1, rank] <= path[3] and bounds[3, rank] >= path[1]:
                         other = order[rank]
                         if may_collide(own, other, shapes, bodies, colliders, joined, category, mask, group):
-                            time = time_between(
-                                own, other, shapes, hulls, bodies, movers, until, scratch, until[row]
-                            )  # fmt: skip
-                            until[row] = min(until[row], time)
+                            stop = stop_of(own, other, shapes, hulls, bodies, movers, until, scratch, until[row])
+                            if stop.time < until[row]:
+                                until[row] = stop.time
+                                note(sunk, row, stop, own, other)
 
 
 @kernel
 def stop_at_kinematic(
     fast, first_shapes, shape_rows, reaches, kinematic, shapes, hulls, bodies, movers, colliders, joined, category,
-    mask, group, until, carriers, scratch,
+    mask, group, until, sunk, carriers, scratch,
 ):  # fmt: skip
     """Stops fast bodies at kinematic ones, whose rows (of shapes) are given, and notes by which they are carried on."""
     path, other_path = np.empty(4), np.empty(4)
@@ -99,10 +107,11 @@ def stop_at_kinematic(
                 write_path(bodies[carrier], movers[carrier], reaches[other], other_path)
                 if overlap(path, other_path):
                     if may_collide(own, other, shapes, bodies, colliders, joined, category, mask, group):
-                        time = time_between(own, other, shapes, hulls, bodies, movers, until, scratch, until[row])
-                        if time < until[row]:
-                            until[row] = time
+                        stop = stop_of(own, other, shapes, hulls, bodies, movers, until, scratch, until[row])
+                        if stop.time < until[row]:
+                            until[row] = stop.time
                             carriers[row] = carrier
+                            note(sunk, row, stop, own, other)
 
 
 @kernel
@@ -144,14 +153,21 @@ def find_encounters(
 
 
 @kernel
-def stop_at_each_other(encounters, shapes, hulls, bodies, movers, until, carriers, scratch):
+def write_stop(pair, shapes, hulls, bodies, movers, until, scratch):
+    """Finds when the two of an encounter must stop."""
+    stop = stop_of(pair.shape1, pair.shape2, shapes, hulls, bodies, movers, until, scratch, 1.0)
+    pair.time, pair.sunk = stop.time, stop.sunk
+
+
+@kernel
+def stop_at_each_other(encounters, shapes, hulls, bodies, movers, until, sunk, carriers, scratch):
     """Stops both bodies of every encounter, the earliest first: who has stopped is met, or missed, where it stands.
 
     carriers: None where nothing is kinematic.
     """
     for k in range(len(encounters)):
         pair = encounters[k]
-        pair.time = time_between(pair.shape1, pair.shape2, shapes, hulls, bodies, movers, until, scratch, 1.0)
+        write_stop(pair, shapes, hulls, bodies, movers, until, scratch)
     for _ in range(len(encounters)):
         first = 0
         for k in range(1, len(encounters)):
@@ -164,17 +180,30 @@ def stop_at_each_other(encounters, shapes, hulls, bodies, movers, until, carrier
         for body in (body1, body2):
             if pair.time < until[body]:
                 until[body] = pair.time
+                sunk[body, 0], sunk[body, 1] = -1, -1
                 if carriers is not None:
                     carriers[body] = -1  # it does not come so far
+        if pair.sunk != 0:
+            sunk[body1, 0], sunk[body1, 1] = pair.shape1, pair.shape2
         pair.time = DONE
         for k in range(len(encounters)):
             other = encounters[k]
             if other.time != DONE:
                 mine, theirs = shapes[other.shape1].body, shapes[other.shape2].body
                 if mine in (body1, body2) or theirs in (body1, body2):
-                    other.time = time_between(
-                        other.shape1, other.shape2, shapes, hulls, bodies, movers, until, scratch, 1.0
-                    )  # fmt: skip
+                    write_stop(other, shapes, hulls, bodies, movers, until, scratch)
+
+
+@kernel
+def part_sunk(rows, shapes, hulls, bodies, movers, motions, until, sunk, scratch):
+    """Takes the speed of approach from bodies that stop though contacts should have held them; see parting.py."""
+    for row in rows:
+        if sunk[row, 0] >= 0 and until[row] < 1.0:
+            shape1, shape2 = shapes[sunk[row, 0]], shapes[sunk[row, 1]]
+            sweep1 = sweep_of(bodies[shape1.body], movers[shape1.body], 1.0)
+            sweep2 = sweep_of(bodies[shape2.body], movers[shape2.body], 1.0)
+            part(shape1, shape2, bodies, movers, motions, sweep1, sweep2, until[row], hulls, scratch)
+        sunk[row, 0], sunk[row, 1] = -1, -1
 
 
 @kernel
@@ -186,18 +215,14 @@ def find_contacts_anew(arbiters, count, until):
 
 
 @kernel
-def hold_back(rows, bodies, movers, until, carriers, most_spin):
-    """Shortens the ways of bodies that stop; one that a kinematic body stopped goes along with it from then on.
-
-    most_spin [rad/s]: faster contacts cannot follow a corner, and what spins on the spot would sink in.
-    """
+def hold_back(rows, bodies, movers, until, carriers):
+    """Shortens the ways of bodies that stop; one that a kinematic body stopped goes along with it from then on."""
     for row in rows:
         time = until[row]
         if time < 1.0:
             mover = movers[row]
             mover.dx, mover.dy = np.float64(mover.dx) * time, np.float64(mover.dy) * time
             mover.turned = np.float64(mover.turned) * time
-            mover.w = max(-most_spin, min(most_spin, np.float64(mover.w)))
             if carriers is not None and carriers[row] >= 0:
                 carry(bodies[row], mover, bodies[carriers[row]], movers[carriers[row]], time)
         until[row] = 1.0
