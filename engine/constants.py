@@ -82,8 +82,8 @@ square of a distance below 1e-19 m loses its digits, and the normal its unit len
 # --- continuous collision -------------------------------------------------------------------------------------------
 
 CONTINUOUS_WAY = 0.5
-"""Part of the half width of its thinnest shape that a body may go in a step, beyond the speculative distance, before it
-counts as fast. Near 1: what ends in the middle of a wall comes out on either side; 0: more bodies are looked at."""
+"""Part of the half width of its thinnest shape that a body may go in a step before it counts as fast. Near 1: what ends
+in the middle of a wall comes out on either side; 0: all bodies that move are looked at."""
 
 CONTINUOUS_DEPTH = 0.005
 CONTINUOUS_SHARE = 0.25

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from engine.constants import CONTINUOUS_WAY
+from engine.constants import CONTINUOUS_DEPTH, CONTINUOUS_WAY
 from engine.continuous.fast import SLOWEST, measure_bodies
 from engine.continuous.stops import (
     ENCOUNTER,
@@ -67,7 +67,7 @@ def read_content(state: State) -> Content:
     shape_rows = np.ascontiguousarray(order[by_body])
     measure_bodies(
         state.dynamic, first_shapes, shape_rows, shapes, state.hulls.tables["hulls"], bodies,
-        float(state.steps["margin"][0]), CONTINUOUS_WAY, slowest, reaches,
+        CONTINUOUS_WAY, CONTINUOUS_DEPTH, slowest, reaches,
     )  # fmt: skip
     filtered = "filters" in state.effects
     category, mask, group = (state.shapes.ensure(n) if filtered else None for n in ("category", "mask", "group"))

@@ -28,6 +28,7 @@ ELSEWHERE = {
     "revolute motors": ("engine.joints.revolute_motor.",),
     "joined without colliding": ("engine.pairs.drop_joined",),
     "diagnostics": ("engine.diagnostics.",),
+    "bullets": ("engine.continuous.stops.",),  # nothing there is fast, let alone a bullet
 }
 
 
