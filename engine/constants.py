@@ -91,6 +91,11 @@ CONTINUOUS_SHARE = 0.25
 Smaller: bodies that slide stop at the seams of a floor, into which they sink a little; larger: corners go through what
 is thin."""
 
+CONTINUOUS_FAR = 10.0
+CONTINUOUS_AHEAD = 1e-3
+"""What goes further in a step than so many speculative distances keeps no contact that is further ahead than this [m].
+Far larger: bullets are turned away by corners that they miss; 0: what slides fast loses the floor now and then."""
+
 CONTINUOUS_NEAR = 0.02
 """Part of that depth by which an impact may be found too early. Zero: what turns takes many advances."""
 

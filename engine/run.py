@@ -16,6 +16,8 @@ from engine.broad_phase.dynamic_tree import DynamicTree
 from engine.broad_phase.tree_leaves import mark_outside
 from engine.calling import address_of, call
 from engine.colouring import any_change
+from engine.continuous.ahead import drop_ahead
+from engine.continuous.content import ahead
 from engine.jit import kernel
 from engine.narrow_phase.recycling import choose_pairs, write_boxes
 from engine.rows import wide
@@ -45,7 +47,16 @@ CALL = np.dtype([("address", np.int64), ("first", np.int64), ("last", np.int64)]
 ADDRESSES = np.dtype(
     [
         (name, np.int64)
-        for name in ("mark_outside", "write_boxes", "choose_pairs", "any_change", "run", "find_fast", "finish")
+        for name in (
+            "mark_outside",
+            "write_boxes",
+            "choose_pairs",
+            "drop_ahead",
+            "any_change",
+            "run",
+            "find_fast",
+            "finish",
+        )
     ]
 )
 
@@ -53,7 +64,7 @@ ADDRESSES = np.dtype(
 @kernel(_nrt=False)  # as in soft_step/work.py
 def repeat(
     number, dt, clock, report, addresses, outlines, colliders, groups, chosen, nothing, bounds, outside, boxes, choice,
-    collision, change, solution, hurry, end,
+    collision, ahead, change, solution, hurry, end,
 ):  # fmt: skip
     """Takes up to `number` steps, and adds their time to clock[0].
 
@@ -77,6 +88,7 @@ def repeat(
                 for place in range(last, last + WIDTH):
                     chosen[place] = nothing
                 call(kind.address, None, (chosen, kind.first, last, *collision))
+        call(to.drop_ahead, None, ahead)
         if call(to.any_change, False, change):
             report[1] = GIVE_COLOURS
             return
@@ -114,6 +126,7 @@ def repetition(state: State) -> Repetition:
     boxes = (state.bounds, state.shapes.order, state.boxes)
     choice = choosing(state, indices, chosen)
     collision = colliding(state)
+    further = ahead(state)
     change = (table.rows, table.count)
     hurry = hurrying(state)
     end = (0, len(order), order, bodies, motions, state.scratch["movers"])
@@ -126,7 +139,8 @@ def repetition(state: State) -> Repetition:
     addresses = empty(1, ADDRESSES)
     addresses[0] = (
         find(mark_outside, 0, *outside), find(write_boxes, None, *boxes), find(choose_pairs, 0, 0, 0, *choice),
-        find(any_change, False, *change), find(run, None, *plan.arguments), find(find_fast, 0, *hurry),
+        find(drop_ahead, None, *further), find(any_change, False, *change), find(run, None, *plan.arguments),
+        find(find_fast, 0, *hurry),
         find(movers.finish, 0, *end),
     )  # fmt: skip
     outlines, colliders = empty(len(state.bounds_plan), CALL), empty(len(state.meetings), CALL)
@@ -142,7 +156,7 @@ def repetition(state: State) -> Repetition:
         plan,
         (
             addresses, outlines, colliders, groups, chosen, table.nothing, bounds, outside, boxes, choice, collision,
-            change, plan.arguments, hurry, end,
+            further, change, plan.arguments, hurry, end,
         ),
     )  # fmt: skip
 

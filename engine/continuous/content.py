@@ -80,6 +80,16 @@ def read_content(state: State) -> Content:
     )  # fmt: skip
 
 
+def ahead(state: State) -> tuple:
+    """What `drop_ahead` takes."""
+    content = content_of(state)
+    bullet = state.column("bullets", state.bodies, "bullet")
+    return (
+        state.arbiters.rows, state.arbiters.contacts, state.arbiters.count, state.dynamic_lanes,
+        state.bodies.tables["motions"], None if content is None else content.slowest, bullet, state.steps,
+    )  # fmt: skip
+
+
 def stop_fast(state: State, content: Content, count: int) -> None:
     """Shortens the ways of the bodies in the first `count` rows of content.fast, and of those that bullets meet."""
     c = content
