@@ -47,6 +47,8 @@ class Task(NamedTuple):
 
     radii: Any  # sum of their rounding radii [m]
     depth: Any  # separation at which they are said to meet [m]
+    spare: Any  # added to it along an axis that lies along `line`: none, where that is zero [m]
+    line: Vec2  # unit, of an outline that is a line
     near: Any  # by how much of the way an impact may be found too early [m]
     side: Vec2  # only axes that do not point against this; zero: all do
     reach_a: Any  # radius of the circle in which the corners of A turn [m]
@@ -83,9 +85,10 @@ def try_axis(best, normal, task, a, count_a, b, count_b, apart, approach, turn_a
     high = -least_along(b, count_b, -normal)
     between = dot(normal, apart)
     separation = between + low - high - task.radii
-    if separation <= task.depth:
+    depth = task.depth + task.spare * dot(normal, task.line) ** 2
+    if separation <= depth:
         return Axis(normal, separation, 0.0) if separation > best.separation and best.lasts == 0.0 else best
-    rest = between - task.radii - task.depth
+    rest = between - task.radii - depth
     speed = dot(normal, approach)
     in_circles = rest - (task.reach_a if turn_a != 0.0 else -low) - (task.reach_b if turn_b != 0.0 else high)
     least = max(best.lasts, first_root(in_circles, speed, 0.0) if in_circles > 0.0 else 0.0)
@@ -185,14 +188,14 @@ def separation_at(time, radii, side, a, count_a, sweep_a, b, count_b, sweep_b):
     """The axis along which two outlines are furthest apart, or overlap least, at a time; side: as in Task."""
     apart = turn_outline(a, count_a, sweep_a, time) - turn_outline(b, count_b, sweep_b, time)
     nothing = Vec2(0.0, 0.0)
-    task = Task(radii, FOREVER, 0.0, side, 0.0, 0.0)  # no axis does, so it is the least overlap
+    task = Task(radii, FOREVER, 0.0, nothing, 0.0, side, 0.0, 0.0)  # no axis does, so it is the least overlap
     return best_axis(task, a, count_a, b, count_b, apart, nothing, 0.0, 0.0)
 
 
 @kernel
 def impact_time(task, a, count_a, sweep_a, b, count_b, sweep_b, end):
     """When two outlines first come as near as `task.depth`, before `end`; NEVER if they do not. Never too late."""
-    swift = abs(sweep_a.way.x - sweep_b.way.x) + abs(sweep_a.way.y - sweep_b.way.y)
+    swift = abs(sweep_a.way.x) + abs(sweep_a.way.y) + abs(sweep_b.way.x) + abs(sweep_b.way.y)
     swift += abs(sweep_a.turn) * task.reach_a + abs(sweep_b.turn) * task.reach_b
     time = 0.0
     nothing = Vec2(0.0, 0.0)

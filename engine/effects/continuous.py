@@ -19,13 +19,14 @@ def passing_through(state: State, settings: Settings) -> str:
     """Dynamic bodies that could go through what nothing pushes or, where there are bullets, through each other."""
     if not settings.continuous or settings.solver != "soft_step":
         return ""
-    kinds = state.bodies.tables["bodies"]["kind"][state.shapes.tables["shapes"]["body"][state.shapes.order]]
-    bodies = state.bodies.tables["bodies"]["kind"][state.bodies.order]
-    dynamic, fixed = int(np.count_nonzero(bodies == DYNAMIC)), int(np.count_nonzero(kinds != DYNAMIC))
-    if not (dynamic and np.any(kinds == DYNAMIC) and (fixed or state.bodies.departing("bullet"))):
+    bodies, shapes = state.bodies.tables["bodies"], state.shapes.tables["shapes"]
+    pieces = shapes[state.shapes.order]
+    swept = bodies["kind"][pieces["body"]] == DYNAMIC
+    count, fixed = len(np.unique(pieces["body"][swept])), len(np.unique(pieces["part_of"][~swept]))
+    if not count or not (fixed or state.bodies.departing("bullet")):
         return ""
-    what = f"one of {fixed} shapes that nothing moves" if fixed else "each other"
-    return f"{dynamic} {'body' if dynamic == 1 else 'bodies'} could go through {what}"
+    what = f"{fixed} shape{'s' * (fixed != 1)} that nothing moves" if fixed else "each other"
+    return f"{count} {'body' if count == 1 else 'bodies'} could go through {what}"
 
 
 def is_bullet(name: str, value: Any) -> bool:
