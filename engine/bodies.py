@@ -43,6 +43,7 @@ class Body(Part):
         drag: float
         magnet: float
         attraction: float
+        bullet: bool
 
     def __init__(self, world: World, row: int, serial: int) -> None:
         self.world = world

@@ -49,6 +49,8 @@ class Configured:
     speculative_distance = Setting[float]()
     recycling = Setting[bool]()
     recycling_distance = Setting[float]()
+    continuous = Setting[bool]()
+    maximum_speed = Setting[float]()
     friction_mixing = Setting[str]()
     restitution_mixing = Setting[str]()
     wind = Setting[tuple[float, float]]()

@@ -61,6 +61,10 @@ RECYCLING_ROLL = 5e-4
 """Nor is it kept when a round shape has turned so far that the point that touched is this much off the outline [m]: a
 tenth of a usual overlap. Larger: balls that roll bob up and down, by 4 cm at a radius of 2 m without this limit."""
 
+MAXIMUM_SPEED = 4000.0
+"""Fastest that anything makes a body [m/s]: ten times the speed of sound. Lower: a bullet stops short of its speed;
+without: what blows up is a number that is not finite a step later."""
+
 MAX_SUBSTEPS = 1000
 """Most substeps that may be asked for."""
 
@@ -81,6 +85,26 @@ PARTING_DISTANCE = 0.005
 """Shapes that touched do so until they are this far apart [m], or until nothing presses if that is later: a contact
 that was seen ahead may. Zero: pairs in a heap begin and end all the time. Larger: more low bounces are told as one
 touch; here those below sqrt(2 g 0.005 m), 0.3 m/s, are."""
+
+# --- continuous collision -------------------------------------------------------------------------------------------
+
+CONTINUOUS_WAY = 0.5
+"""Part of the half width of its thinnest shape that a body may go in a step before it counts as fast. Near 1: what ends
+in the middle of a wall comes out on either side; 0: all bodies that move are looked at."""
+
+CONTINUOUS_DEPTH = 0.005
+CONTINUOUS_SHARE = 0.25
+"""What is fast stops where it would overlap by more than this [m], or by more than this part of the thinner half width.
+Smaller: bodies that slide stop at the seams of a floor, into which they sink a little; larger: corners go through what
+is thin."""
+
+CONTINUOUS_FAR = 10.0
+CONTINUOUS_AHEAD = 1e-3
+"""What goes further in a step than so many speculative distances keeps no contact that is further ahead than this [m].
+Far larger: bullets are turned away by corners that they miss; 0: what slides fast loses the floor now and then."""
+
+CONTINUOUS_NEAR = 0.02
+"""Part of that depth by which an impact may be found too early. Zero: what turns takes many advances."""
 
 # --- broad phase --------------------------------------------------------------------------------------------------
 

@@ -2,7 +2,7 @@
 
 The stages are those of engine/stages.py in their order, and the kernels are the very ones that these call. Python takes
 over in the middle of a step when a shape has left its fat box, so that pairs may change; when something began or ceased
-to touch, so that it needs a colour; and when a body is lost.
+to touch, so that it needs a colour; when a body is so fast that it might go through something; and when one is lost.
 """
 
 from __future__ import annotations
@@ -16,6 +16,8 @@ from engine.broad_phase.dynamic_tree import DynamicTree
 from engine.broad_phase.tree_leaves import mark_outside
 from engine.calling import address_of, call
 from engine.colouring import any_change
+from engine.continuous.ahead import drop_ahead
+from engine.continuous.content import ahead
 from engine.jit import kernel
 from engine.narrow_phase.recycling import choose_pairs, write_boxes
 from engine.rows import wide
@@ -23,7 +25,8 @@ from engine.settings import Settings
 from engine.shapes.placing import GROUP
 from engine.simd import WIDTH
 from engine.solvers import SOLVERS
-from engine.solvers.soft_step import SOFT_STEP, movers, plan_of
+from engine.solvers.soft_step import SOFT_STEP, hurrying, movers, plan_of
+from engine.solvers.soft_step.speeds import find_fast
 from engine.solvers.soft_step.work import run
 from engine.stages import STAGES, bounding, choosing, colliding, lost_in_solver
 from engine.state import State
@@ -34,7 +37,7 @@ AT_MOST = 1000  # steps without a look at Python, which may have been told to st
 BODY_STEPS = 200_000  # likewise: steps times bodies
 WORTHWHILE = 8  # steps that make up for what it takes to begin
 LONGEST_PAUSE = 31  # steps that Python takes before the next try, where the last ones were not worthwhile
-FIND_PAIRS, GIVE_COLOURS, NOWHERE = 0, 3, -1  # the stage from which Python goes on
+FIND_PAIRS, GIVE_COLOURS, UPDATE_POSITIONS, NOWHERE = 0, 3, 5, -1  # the stage from which Python goes on
 LOST = len(STAGES)
 
 GROUPS = wide(GROUP)
@@ -42,14 +45,26 @@ CALL = np.dtype([("address", np.int64), ("first", np.int64), ("last", np.int64)]
 """The kernel of one kind of shape or of pair, and where its own begin and end in the list of all."""
 
 ADDRESSES = np.dtype(
-    [(name, np.int64) for name in ("mark_outside", "write_boxes", "choose_pairs", "any_change", "run", "finish")]
+    [
+        (name, np.int64)
+        for name in (
+            "mark_outside",
+            "write_boxes",
+            "choose_pairs",
+            "drop_ahead",
+            "any_change",
+            "run",
+            "find_fast",
+            "finish",
+        )
+    ]
 )
 
 
 @kernel(_nrt=False)  # as in soft_step/work.py
 def repeat(
     number, dt, clock, report, addresses, outlines, colliders, groups, chosen, nothing, bounds, outside, boxes, choice,
-    collision, change, solution, end,
+    collision, ahead, change, solution, hurry, end,
 ):  # fmt: skip
     """Takes up to `number` steps, and adds their time to clock[0].
 
@@ -73,10 +88,14 @@ def repeat(
                 for place in range(last, last + WIDTH):
                     chosen[place] = nothing
                 call(kind.address, None, (chosen, kind.first, last, *collision))
+        call(to.drop_ahead, None, ahead)
         if call(to.any_change, False, change):
             report[1] = GIVE_COLOURS
             return
         call(to.run, None, solution)
+        if call(to.find_fast, 0, hurry) > 0:
+            report[1] = UPDATE_POSITIONS
+            return
         report[2] = call(to.finish, 0, end)
         if report[2] >= 0:
             report[1] = LOST
@@ -107,7 +126,9 @@ def repetition(state: State) -> Repetition:
     boxes = (state.bounds, state.shapes.order, state.boxes)
     choice = choosing(state, indices, chosen)
     collision = colliding(state)
+    further = ahead(state)
     change = (table.rows, table.count)
+    hurry = hurrying(state)
     end = (0, len(order), order, bodies, motions, state.scratch["movers"])
 
     def find(kernel: Any, result: Any, *arguments: Any) -> int:
@@ -118,7 +139,9 @@ def repetition(state: State) -> Repetition:
     addresses = empty(1, ADDRESSES)
     addresses[0] = (
         find(mark_outside, 0, *outside), find(write_boxes, None, *boxes), find(choose_pairs, 0, 0, 0, *choice),
-        find(any_change, False, *change), find(run, None, *plan.arguments), find(movers.finish, 0, *end),
+        find(drop_ahead, None, *further), find(any_change, False, *change), find(run, None, *plan.arguments),
+        find(find_fast, 0, *hurry),
+        find(movers.finish, 0, *end),
     )  # fmt: skip
     outlines, colliders = empty(len(state.bounds_plan), CALL), empty(len(state.meetings), CALL)
     first = 0
@@ -133,7 +156,7 @@ def repetition(state: State) -> Repetition:
         plan,
         (
             addresses, outlines, colliders, groups, chosen, table.nothing, bounds, outside, boxes, choice, collision,
-            change, plan.arguments, end,
+            further, change, plan.arguments, hurry, end,
         ),
     )  # fmt: skip
 

@@ -111,6 +111,10 @@ class Settings:
     recycling_distance: float = number(
         constants.RECYCLING_DISTANCE, 0.0, 0.2, 0.005, "m", "how far bodies move before contacts are found anew", SOFT
     )
+    continuous: bool = switch("what is fast stops where it would go through something", SOFT)
+    maximum_speed: float = number(
+        constants.MAXIMUM_SPEED, 100.0, 10000.0, 100.0, "m/s", "of a body: what would be faster is held to it", SOFT
+    )
     friction_mixing: str = choice("geometric", mixing.RULES, "the friction of two shapes that touch")
     restitution_mixing: str = choice("greatest", mixing.RULES, "the restitution of two shapes that touch", SOFT)
     wind: tuple[float, float] = vector((0.0, 0.0), 30.0, "m/s", "of the air; moves bodies that have drag")

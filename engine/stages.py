@@ -13,6 +13,9 @@ import numpy as np
 from engine.atomics import new_counters
 from engine.breaking import break_joints
 from engine.constants import BIAS_FACTOR, BOUNDS_MARGIN, SLOP
+from engine.continuous.ahead import drop_ahead
+from engine.continuous.content import NAME as CONTINUOUS
+from engine.continuous.content import ahead
 from engine.errors import StepError
 from engine.narrow_phase import TOGETHER
 from engine.narrow_phase.recycling import choose_pairs, choose_together, write_boxes
@@ -62,6 +65,8 @@ def narrow_phase(state: State, settings: Settings) -> None:
             share(threads, TOGETHER[collide], new_counters(2), firsts, chosen, *arguments)
         elif count:
             collide(chosen, 0, count, *arguments)
+    if CONTINUOUS in state.effects:
+        drop_ahead(*ahead(state))
 
 
 def colliding(state: State) -> tuple:
@@ -174,6 +179,7 @@ def write_step(step: np.ndarray, settings: Settings, dt: float, carried: float) 
         "carried": carried / n,
         "push_out_speed": settings.push_out_speed,
         "restitution_threshold": settings.restitution_threshold,
+        "maximum_speed": settings.maximum_speed,
     }
     soft = stiffness(settings, dt)
     values |= dict(zip(SOFTNESS_FIELDS, (*soft.contact, *soft.static, *soft.joint), strict=True))

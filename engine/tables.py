@@ -329,6 +329,7 @@ def step_dtype(precision: str) -> np.dtype:
             ("carried", real),  # part of a stored impulse that a substep starts from
             ("push_out_speed", real),  # [m/s]
             ("restitution_threshold", real),  # [m/s]
+            ("maximum_speed", real),  # [m/s]
             *((name, real) for name in SOFTNESS_FIELDS),
         ]
     )

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from engine.effects.buoyancy import BUOYANCY
 from engine.effects.contact import CONVEYOR, FRICTION, RESTITUTION, ROLLING_RESISTANCE
+from engine.effects.continuous import BULLETS, CONTINUOUS
 from engine.effects.drag import DRAG, WIND
 from engine.effects.effect import Effect, EffectStatus, Property
 from engine.effects.explosion import EXPLOSION
@@ -40,6 +41,8 @@ EFFECTS: tuple[Effect, ...] = (
     JOINT_LIMITS,
     CHAINS,
     BREAKING,
+    CONTINUOUS,
+    BULLETS,
     PASSING,
     EVENTS,
     DIAGNOSTICS,

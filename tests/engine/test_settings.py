@@ -30,6 +30,8 @@ CHANGES: dict[str, Any] = {
     "speculative_distance": 0.0,
     "recycling": False,
     "recycling_distance": 0.001,
+    "continuous": False,
+    "maximum_speed": 30.0,
     "friction_mixing": "product",
     "restitution_mixing": "mean",
     "wind": (8.0, 1.0),

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from engine.atomics import new_counters
+from engine.continuous.content import content_of, stop_fast
 from engine.mixing import RULES
 from engine.program import COUNTERS, PARTS_A_THREAD, STAGE, clear_counters
 from engine.rows import wide
@@ -25,6 +26,7 @@ from engine.solvers.soft_step.joints.point import cap_dtype, point_dtype
 from engine.solvers.soft_step.joints.slide import slide_dtype
 from engine.solvers.soft_step.joints.turn import turn_dtype
 from engine.solvers.soft_step.schedule import most_stages, write_program
+from engine.solvers.soft_step.speeds import find_fast
 from engine.solvers.soft_step.work import run
 from engine.solvers.solver import Solver
 from engine.tables import empty
@@ -154,8 +156,19 @@ def solve(state: State, settings: Settings) -> None:
         share(plan.threads, run, plan.threads, new_counters(3), *program)
 
 
+def hurrying(state: State) -> tuple:
+    """What `find_fast` takes."""
+    content = content_of(state)
+    slowest, fast = (None, None) if content is None else (content.slowest, content.fast)
+    return state.dynamic_lanes, state.scratch["movers"], slowest, fast, state.steps
+
+
 def update_positions(state: State, settings: Settings) -> int:
-    """Bodies go where the substeps took them."""
+    """Bodies go where the substeps took them, or until they would go through something."""
+    count = find_fast(*hurrying(state))
+    content = content_of(state)
+    if content is not None and count:
+        stop_fast(state, content, count)
     bodies, motions, order = state.bodies.tables["bodies"], state.bodies.tables["motions"], state.bodies.order
     moved = state.scratch["movers"]
     threads = usable(state.threads, len(order))

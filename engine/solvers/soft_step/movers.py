@@ -13,11 +13,11 @@ import numpy as np
 from engine.atomics import count_up
 from engine.integrate import place_origin, turn
 from engine.jit import kernel
-from engine.lanes import const, eight_of
+from engine.lanes import const, eight_of, holds_somewhere, select, sqrt
 from engine.rows import at, load_row, pick, store_row
 from engine.simd import WIDTH
 from engine.threads import DONE, take_part, wait_for_all
-from engine.vec2 import Vec2, rotate
+from engine.vec2 import Vec2, dot, rotate
 
 
 class Mover(NamedTuple):
@@ -81,8 +81,19 @@ def drive(first, last, dynamic, bodies, motions, gravity, scales, drives, step):
 
 
 @kernel
+def hold_speed(v, most):
+    """A velocity, or one of the largest speed in its direction [m/s]."""
+    squared = dot(v, v)
+    above = squared > most * most
+    if holds_somewhere(above):
+        one = const(1.0, squared)
+        return v * select(above, most / sqrt(select(above, squared, one)), one)
+    return v
+
+
+@kernel
 def integrate_velocities(first, last, dynamic, drives, movers, linear, angular, step):
-    """v += what forces do, then v /= 1 + h c; the same for the angular velocity.
+    """v += what forces do, then v /= 1 + h c, up to the largest speed; the same for the angular velocity.
 
     linear, angular: None where the effect is not called for.
     """
@@ -98,7 +109,7 @@ def integrate_velocities(first, last, dynamic, drives, movers, linear, angular, 
             v = v * slower
         if angular is not None:
             w = w * (one / (one + step.h * const(pick(angular, rows), w)))
-        store(movers, rows, v, w, mover.turned)
+        store(movers, rows, hold_speed(v, step.maximum_speed), w, mover.turned)
 
 
 @kernel

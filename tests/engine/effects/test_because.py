@@ -27,7 +27,11 @@ def because(world: World) -> dict[str, str]:
     return {status.name: status.because for status in statuses if status.called_for}
 
 
-PLAIN = {"gravity": "gravity is (0, -10) m/s²", "friction": "3 of 3 shapes have friction"}
+PLAIN = {
+    "gravity": "gravity is (0, -10) m/s²",
+    "friction": "3 of 3 shapes have friction",
+    "continuous collision": "2 bodies could go through 1 shape that nothing moves",
+}
 
 
 def join(world: World, **arguments: Any) -> None:
@@ -39,7 +43,7 @@ def set_shape(name: str, value: float) -> Callable[[World], None]:
     return lambda world: setattr(world.bodies[1].shapes[0], name, value)
 
 
-def set_body(name: str, value: float) -> Callable[[World], None]:
+def set_body(name: str, value: Any) -> Callable[[World], None]:
     return lambda world: setattr(world.bodies[1], name, value)
 
 
@@ -62,6 +66,7 @@ CALLS: dict[str, tuple[Callable[[World], None], dict[str, str]]] = {
         lambda world: join(world, collide_connected=False),
         {"revolute joints": "1 revolute joint", "joined without colliding": "1 joint of bodies that do not collide"},
     ),
+    "bullet": (set_body("bullet", True), {"bullets": "1 of 3 bodies has the property bullet"}),
     "diagnostics": (lambda world: world.diagnostics(), {"diagnostics": "somebody asks for energy and momentum"}),
 }
 
@@ -104,8 +109,9 @@ def test_it_follows_the_content() -> None:
     ball.destroy()
     assert because(world) == PLAIN
     run(world, 1)
-    assert world._state.effects == {"gravity", "friction"}
+    assert world._state.effects == {"gravity", "friction", "continuous collision"}
     world.gravity = (0, 0)
+    world.continuous = False
     world.bodies[0].friction = 0
     assert because(world) == {"friction": "2 of 3 shapes have friction"}
     for body in world.bodies:

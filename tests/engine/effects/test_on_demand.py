@@ -33,6 +33,7 @@ ELSEWHERE = {
     "joined without colliding": ("engine.pairs.drop_joined",),
     "events": ("engine.happened.", "engine.touching."),
     "diagnostics": ("engine.diagnostics.",),
+    "bullets": ("engine.continuous.stops.",),  # nothing there is fast, let alone a bullet
 }
 
 
