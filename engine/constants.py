@@ -104,5 +104,13 @@ RESTITUTION_THRESHOLD = 1.0
 """Shapes that meet slower than this do not bounce [m/s]. Zero: resting bodies tremble for ever; larger: a ball stops
 while one still sees it move."""
 
+SLEEP_SPEED = 0.05
+"""Slower than this, as the root mean square of all its mass, a body is still [m/s]: Box2D's figure. Larger: what creeps
+or tips slowly is stopped; smaller: heaps that tremble never sleep."""
+
+SLEEP_TIME = 0.5
+"""So long must all of an island be still before it falls asleep [s]: Box2D's figure. Smaller: what turns back, such as
+a ball at its highest, is stopped."""
+
 MAX_ITERATIONS = 10_000
 """Most passes that may be asked for: a step that lasts minutes is a typing error."""

@@ -17,6 +17,7 @@ from engine.effects.motion import ANGULAR_DAMPING, GRAVITY, GRAVITY_SCALE, LINEA
 from engine.effects.motors import REVOLUTE_MOTORS
 from engine.effects.others import DIAGNOSTICS, PASSING, REVOLUTE
 from engine.effects.point_gravity import POINT_GRAVITY
+from engine.effects.sleeping import SLEEPING
 
 EFFECTS: tuple[Effect, ...] = (
     GRAVITY,
@@ -37,6 +38,7 @@ EFFECTS: tuple[Effect, ...] = (
     REVOLUTE,
     REVOLUTE_MOTORS,
     PASSING,
+    SLEEPING,
     DIAGNOSTICS,
 )
 

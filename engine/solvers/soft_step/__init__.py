@@ -76,7 +76,7 @@ def make_plan(state: State, settings: Settings) -> Plan:
     p = state.precision
     pairs, layout, joint_layout, steps = state.arbiters, state.layout, state.joint_layout, state.steps
     bodies, motions = state.bodies.tables["bodies"], state.bodies.tables["motions"]
-    threads = usable(state.threads, len(state.bodies.order))
+    threads = usable(state.threads, len(state.awake_order))
     blocks, joint_blocks = layout.blocks, joint_layout.blocks
     bounces = rows(state, "bounces", tables.restitution_dtype(p), blocks, "restitution")
     program = table(state, "program", STAGE, most_stages(settings.substeps, settings.iterations))
@@ -114,7 +114,7 @@ def make_plan(state: State, settings: Settings) -> Plan:
 
 def solve(state: State, settings: Settings) -> None:
     """All substeps."""
-    state.follow_colours()
+    state.follow_contacts()
     plan = plan_of(state, settings)
     if plan.threads == 1:
         run(*plan.arguments)
@@ -126,17 +126,21 @@ def solve(state: State, settings: Settings) -> None:
 
 def update_positions(state: State, settings: Settings) -> int:
     """Bodies go where the substeps took them."""
-    bodies, motions, order = state.bodies.tables["bodies"], state.bodies.tables["motions"], state.bodies.order
+    bodies, motions, order = state.bodies.tables["bodies"], state.bodies.tables["motions"], state.awake_order
     moved = state.scratch["movers"]
     threads = usable(state.threads, len(order))
     if threads == 1:
-        lost = movers.finish(0, len(order), order, bodies, motions, moved)
+        lost = movers.finish(0, len(order), order, bodies, motions, moved, state.ready, 0, state.timed)
     else:
         parts = PARTS_A_THREAD * threads
-        found = np.empty(parts, np.int64)
+        found, ready = np.empty(parts, np.int64), np.zeros(parts, np.int64)
         firsts = shares(len(order), parts)
-        share(threads, movers.finish_together, new_counters(2), firsts, found, order, bodies, motions, moved)
+        share(
+            threads, movers.finish_together, new_counters(2), firsts, found, order, bodies, motions, moved, ready,
+            state.timed,
+        )  # fmt: skip
         lost = -1 if found.max() < 0 else found[found >= 0].min()
+        state.ready[0] = ready.sum()
     return int(order[lost]) if lost >= 0 else -1
 
 

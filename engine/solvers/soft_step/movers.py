@@ -127,12 +127,14 @@ def integrate_positions(first, last, moving, movers, h):
 
 
 @kernel
-def finish(first, last, order, bodies, motions, movers):
+def finish(first, last, order, bodies, motions, movers, ready, place, steps):
     """Moves the bodies from `first` to before `last` to where the substeps took them; forces are used up.
 
-    Returns the rank of the first body whose state is no longer finite, -1 if there is none.
+    Returns the rank of the first body whose state is no longer finite, -1 if there is none. ready[place]: how many have
+    been still for long enough to sleep; steps: None where nothing sleeps.
     """
     lost = -1
+    still = first * 0  # a literal would be a type of its own
     for rank in range(first, last):
         row = order[rank]
         body = bodies[row]
@@ -154,15 +156,41 @@ def finish(first, last, order, bodies, motions, movers):
             finite = finite and np.isfinite(motion.vx) and np.isfinite(motion.vy) and np.isfinite(motion.w)
             if lost < 0 and not finite:
                 lost = rank
+            if steps is not None:
+                still += time_still(motion, mover, steps[0])
+    if steps is not None:
+        ready[place] = still
     return lost
 
 
 @kernel
-def finish_together(leads, board, firsts, lost, order, bodies, motions, movers):
+def time_still(motion, mover, step):
+    """Times how long a body has been still, see engine/sleeping.py. Returns whether that is long enough to sleep.
+
+    What is pushed out of another has no speed left, but goes a way.
+    """
+    if motion.inverse_mass == 0:
+        return False
+    speed = mover.vx * mover.vx + mover.vy * mover.vy
+    way = mover.dx * mover.dx + mover.dy * mover.dy
+    if motion.inverse_inertia > 0:
+        square = motion.inverse_mass / motion.inverse_inertia  # of the radius of gyration
+        speed += mover.w * mover.w * square
+        way += mover.turned * mover.turned * square
+    limit = step.sleep_speed * step.sleep_speed
+    if speed < limit and way < limit * step.dt * step.dt:
+        motion.still += step.dt
+    else:
+        motion.still = 0
+    return motion.still >= step.sleep_time
+
+
+@kernel
+def finish_together(leads, board, firsts, lost, order, bodies, motions, movers, ready, steps):
     """The same by several threads: part p from firsts[p] to before firsts[p + 1]."""
     part = take_part(board, len(lost))
     while part >= 0:
-        lost[part] = finish(firsts[part], firsts[part + 1], order, bodies, motions, movers)
+        lost[part] = finish(firsts[part], firsts[part + 1], order, bodies, motions, movers, ready, part, steps)
         count_up(board, DONE)
         part = take_part(board, len(lost))
     if leads:
