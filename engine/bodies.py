@@ -15,7 +15,7 @@ from engine.properties import Part
 from engine.queries import rows_at
 from engine.shape_handle import ShapeHandle
 from engine.shapes import Shape
-from engine.sleeping import asleep_of, hush, touch
+from engine.sleeping import asleep_of, hush, touch, touch_weights
 from engine.tables import BODY_KINDS, STATIC
 from engine.vec2 import Vec2, cross
 from engine.weights import reweigh
@@ -344,6 +344,10 @@ class Body(Part):
     def _touch(self) -> None:
         """Something is done to it: see engine/sleeping.py."""
         touch(self.world._state, self._row)
+
+    def _touch_property(self) -> None:
+        """A property of its own is set: what lies on it does not feel that."""
+        touch_weights(self.world._state, np.array([self._row]))
 
     def _movable(self, name: str, value: Any) -> Any:
         if int(self._body["kind"]) == STATIC:

@@ -49,7 +49,7 @@ ADDRESSES = np.dtype([(name, np.int64) for name in KERNELS])
 @kernel(_nrt=False)  # as in soft_step/work.py
 def repeat(
     number, dt, clock, report, addresses, outlines, colliders, groups, chosen, nothing, bounds, outside, boxes, choice,
-    collision, change, rest, solution, end,
+    collision, change, rest, solution, end, ready,
 ):  # fmt: skip
     """Takes up to `number` steps, and adds their time to clock[0].
 
@@ -77,9 +77,9 @@ def repeat(
             report[1] = GIVE_COLOURS
             return
         call(to.run, None, solution)
-        report[2] = call(to.finish, 0, end)
-        if report[2] >= 0:
-            report[1] = LOST
+        ready[0] = call(to.finish, 0, end)
+        if ready[0] < 0:
+            report[1], report[2] = LOST, -1 - ready[0]
             return
         clock[0] += dt
     report[0] = number
@@ -111,7 +111,7 @@ def repetition(state: State) -> Repetition:
     collision = colliding(state)
     change = (table.rows, table.count, watched)
     rest = asking(state)
-    end = (0, len(order), order, bodies, motions, state.scratch["movers"], state.ready, 0, state.timed)
+    end = (0, len(order), order, bodies, motions, state.scratch["movers"], state.timed)
     if state.acting is None:
         mark, write, differ = mark_outside, write_boxes, any_change
     else:
@@ -142,6 +142,7 @@ def repetition(state: State) -> Repetition:
         (
             addresses, outlines, colliders, groups, chosen, table.nothing, bounds, outside, boxes, choice, collision,
             change, rest, plan.arguments, end,
+            state.ready,
         ),
     )  # fmt: skip
 
@@ -178,7 +179,7 @@ def run_quietly(state: State, settings: Settings, steps: int, dt: float) -> tupl
     Returns how many, and from which stage Python must go on with the next one: NOWHERE if nothing calls for it.
     StepError as in World.step.
     """
-    if state.dormant:
+    if state.acting is not None and state.dormant:
         return rest_through(state, min(steps, AT_MOST), dt), NOWHERE
     if state.pause_left > 0 or not can_repeat(state, settings):
         state.pause_left = max(0, state.pause_left - 1)

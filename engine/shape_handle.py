@@ -77,7 +77,7 @@ class ShapeHandle(Part):
     def friction(self, value: float) -> None:
         friction = validate.non_negative("friction", value)
         validate.in_range(self.world.precision, friction=(friction,))
-        self._touch()
+        self._touch_property()
         self.world._state.shapes.tables["shapes"]["friction"][self.rows] = friction
         self.world._state.stale = True
 
@@ -86,7 +86,7 @@ class ShapeHandle(Part):
         self._check()
         self.world._destroy_shape(self)
 
-    def _touch(self) -> None:
+    def _touch_property(self) -> None:
         touch(self.world._state, int(self._rows[0]["body"]))
 
     @property

@@ -154,8 +154,6 @@ def asking(state: State) -> tuple:
 
 def fall_asleep(state: State) -> bool:
     """Puts to sleep what may, and returns whether anything did. Contacts and islands must be up to date."""
-    if state.ready[0] == 0:
-        return False
     if state.fluids.count:
         stir_wet(state)
     if not may_sleep(*asking(state)):
@@ -299,9 +297,9 @@ def hush(state: State, row: int) -> None:
     state.ready[0] = 1
 
 
-def touch_rows(state: State, rows: np.ndarray) -> None:
-    """`touch` for many."""
-    for row in rows:
+def touch_weights(state: State, rows: np.ndarray) -> None:
+    """`touch` for those of some bodies that have weight: nothing is done to what the others touch."""
+    for row in rows[state.bodies.tables["motions"]["inverse_mass"][rows] > 0]:
         touch(state, int(row))
 
 

@@ -51,8 +51,7 @@ def bounding(state: State) -> tuple:
     """What kernels that write bounding boxes take after the group of shapes."""
     shapes, hulls = state.shapes.tables["shapes"], state.hulls.tables["hulls"]
     bodies, motions = state.bodies.tables["bodies"], state.bodies.tables["motions"]
-    margin = BOUNDS_MARGIN + 0.5 * float(state.steps["margin"][0])
-    return shapes, hulls, bodies, motions, state.placements, margin, state.bounds
+    return shapes, hulls, bodies, motions, state.placements, state.bounds_margin, state.bounds
 
 
 def update_arbiters(state: State, settings: Settings) -> None:
@@ -155,6 +154,7 @@ def prepare_step(state: State, settings: Settings, dt: float) -> None:
     if state.prepared_for is not settings or (state.prepared_dt, state.prepared_carried) != (dt, carried):
         state.prepared_for, state.prepared_dt, state.prepared_carried = settings, dt, carried
         write_step(state.steps, settings, dt, carried)
+        state.bounds_margin = BOUNDS_MARGIN + 0.5 * float(state.steps["margin"][0])
         if carried != 1.0:
             carry_impulses(state, carried)
     if state.stale:

@@ -98,6 +98,7 @@ class State:
         self.stale = True  # content or settings changed since the last refresh
         self.prepared_for: Settings | None = None
         self.prepared_dt = self.prepared_carried = 0.0
+        self.bounds_margin = 0.0  # by which bounding boxes are larger [m]
 
     def forget_broad_phase(self) -> None:
         """The next step finds all pairs anew. Which arbiters have contacts does not depend on it."""
@@ -245,23 +246,19 @@ class State:
     def follow_contacts(self) -> None:
         """Takes up what has begun to touch and what has parted: it wakes what sleeps, joins islands, gets a colour."""
         table = self.arbiters
-        changed = self.colours_are_stale or self.any_change()
+        changed = self.colours_are_stale
+        if not changed:
+            differ, watched = (any_change, NOTHING) if self.watched is None else (any_change_among, self.watched)
+            changed = differ(table.rows, table.count, watched)
         if changed:
             if wake_touched(self):
                 list_all(self)
             self.islands.follow(self.watched_arbiters(), table.rows, self.bodies.tables["motions"])
-        if self.timed is not None and fall_asleep(self):
+        if self.timed is not None and self.ready[0] > 0 and fall_asleep(self):
             list_all(self)
             changed = True
         if changed:
             self.follow_colours()
-
-    def any_change(self) -> bool:
-        """Whether something began or ceased to touch."""
-        table = self.arbiters
-        if self.watched is None:
-            return bool(any_change(table.rows, table.count, NOTHING))
-        return bool(any_change_among(table.rows, table.count, self.watched))
 
     def follow_colours(self) -> None:
         """Gives what touches a colour, and takes that of what has parted. What sleeps keeps its own, and no place."""

@@ -28,7 +28,7 @@ from engine.run import NOWHERE, rest_through, run_quietly
 from engine.settings import Settings
 from engine.shape_handle import ShapeHandle
 from engine.shapes import Shape
-from engine.sleeping import asleep_of, island_names, touch_rows, wake_all
+from engine.sleeping import asleep_of, island_names, touch_weights, wake_all
 from engine.snapshot import Snapshot, state_hash
 from engine.snapshot_check import check_tables
 from engine.stages import STAGES, prepare_step
@@ -67,7 +67,7 @@ class World(Configured):
         dt = self._checked(dt)
         if dt > 0.0:
             prepare_step(self._state, self._settings, dt)
-            if self._state.dormant:
+            if self._state.acting is not None and self._state.dormant:
                 rest_through(self._state, 1, dt)
             else:
                 self._finish_step(dt)
@@ -274,7 +274,7 @@ class World(Configured):
     def _joined(self, row: int) -> None:
         """A joint has come, changes or goes: its bodies wake."""
         joint = self._state.joints.tables["joints"][row]
-        touch_rows(self._state, np.array([joint["body1"], joint["body2"]]))
+        touch_weights(self._state, np.array([joint["body1"], joint["body2"]]))
         self._content_changed()
 
     def _content_changed(self) -> None:

@@ -31,6 +31,8 @@ REBUILD_SHARE = 0.25  # part of the leaves new or gone at once from which buildi
 IN_PLACE_SHARE = 0.01  # part of the leaves moved at once from which they stay where they are in the tree, see `place`
 CROWD_SHARE = 0.06  # part of the leaves moved at once from which all pairs are found anew, see blocks.py
 
+NOBODY = np.empty(0, np.int64)
+
 
 class DynamicTree:
     """Rows of pieces and their boxes go in, pairs of rows come out.
@@ -96,7 +98,7 @@ class DynamicTree:
             raise ValueError(f"bounds of shape {bounds.shape} for {len(self.rows)} pieces")
         bounds = np.ascontiguousarray(bounds, np.float32)
         if ranks is None:
-            outside = mark_outside(bounds, self._fat, self._flags, self._stack[0])
+            outside = mark_outside(bounds, self._fat, self._flags, NOBODY)
         else:
             if ranks is not self._ranks:  # flags of others are those of an earlier update
                 self._flags[:] = False

@@ -130,18 +130,20 @@ def update_positions(state: State, settings: Settings) -> int:
     moved = state.scratch["movers"]
     threads = usable(state.threads, len(order))
     if threads == 1:
-        lost = movers.finish(0, len(order), order, bodies, motions, moved, state.ready, 0, state.timed)
+        ready = movers.finish(0, len(order), order, bodies, motions, moved, state.timed)
     else:
         parts = PARTS_A_THREAD * threads
-        found, ready = np.empty(parts, np.int64), np.zeros(parts, np.int64)
+        found = np.empty(parts, np.int64)
         firsts = shares(len(order), parts)
         share(
-            threads, movers.finish_together, new_counters(2), firsts, found, order, bodies, motions, moved, ready,
+            threads, movers.finish_together, new_counters(2), firsts, found, order, bodies, motions, moved,
             state.timed,
         )  # fmt: skip
-        lost = -1 if found.max() < 0 else found[found >= 0].min()
-        state.ready[0] = ready.sum()
-    return int(order[lost]) if lost >= 0 else -1
+        ready = found.sum() if found.min() >= 0 else found[found < 0].max()  # of the lost the first
+    if ready < 0:
+        return int(order[-1 - ready])
+    state.ready[0] = ready
+    return -1
 
 
 SOFT_STEP = Solver(

@@ -127,14 +127,16 @@ def integrate_positions(first, last, moving, movers, h):
 
 
 @kernel
-def finish(first, last, order, bodies, motions, movers, ready, place, steps):
+def finish(first, last, order, bodies, motions, movers, steps):
     """Moves the bodies from `first` to before `last` to where the substeps took them; forces are used up.
 
-    Returns the rank of the first body whose state is no longer finite, -1 if there is none. ready[place]: how many have
-    been still for long enough to sleep; steps: None where nothing sleeps.
+    Returns how many have been still for long enough to sleep, or, if the state of one is no longer finite, -1 less the
+    rank of the first. steps: None where nothing sleeps.
     """
     lost = -1
     still = first * 0  # a literal would be a type of its own
+    if steps is not None:
+        limits = limits_of(steps[0])
     for rank in range(first, last):
         row = order[rank]
         body = bodies[row]
@@ -157,41 +159,51 @@ def finish(first, last, order, bodies, motions, movers, ready, place, steps):
             if lost < 0 and not finite:
                 lost = rank
             if steps is not None:
-                still += time_still(motion, mover, steps[0])
-    if steps is not None:
-        ready[place] = still
-    return lost
+                still += time_still(motion, mover, limits)
+    return still if lost < 0 else -1 - lost
+
+
+class Limits(NamedTuple):
+    """When a body is still, see engine/sleeping.py."""
+
+    speed: Any  # square of the speed below which it is [m^2/s^2]
+    way: Any  # square of the way that it goes in a step at that speed [m^2]
+    dt: Any  # [s]
+    enough: Any  # time after which it may sleep [s]
 
 
 @kernel
-def time_still(motion, mover, step):
-    """Times how long a body has been still, see engine/sleeping.py. Returns whether that is long enough to sleep.
+def limits_of(step):
+    """The limits that hold for a step."""
+    speed = step.sleep_speed * step.sleep_speed
+    return Limits(speed, speed * step.dt * step.dt, step.dt, step.sleep_time)
 
-    What is pushed out of another has no speed left, but goes a way.
+
+@kernel
+def time_still(motion, mover, limits):
+    """Times how long a body has been still. Returns whether that is long enough to sleep.
+
+    What is pushed out of another has no speed left, but goes a way. Both sides are multiplied by 1 / I, as a division
+    takes long; where nothing turns the body, w is 0.
     """
-    if motion.inverse_mass == 0:
-        return False
-    speed = mover.vx * mover.vx + mover.vy * mover.vy
-    way = mover.dx * mover.dx + mover.dy * mover.dy
-    if motion.inverse_inertia > 0:
-        square = motion.inverse_mass / motion.inverse_inertia  # of the radius of gyration
-        speed += mover.w * mover.w * square
-        way += mover.turned * mover.turned * square
-    limit = step.sleep_speed * step.sleep_speed
-    if speed < limit and way < limit * step.dt * step.dt:
-        motion.still += step.dt
-    else:
-        motion.still = 0
-    return motion.still >= step.sleep_time
+    mass, inertia = motion.inverse_mass, motion.inverse_inertia
+    inertia = inertia if inertia > 0 else mass
+    speed = mover.vx * mover.vx + mover.vy * mover.vy - limits.speed
+    way = mover.dx * mover.dx + mover.dy * mover.dy - limits.way
+    slow = inertia * speed + mass * (mover.w * mover.w) < 0
+    near = inertia * way + mass * (mover.turned * mover.turned) < 0
+    still = motion.still + limits.dt if slow and near else limits.dt * 0
+    motion.still = still
+    return still >= limits.enough
 
 
 @kernel
-def finish_together(leads, board, firsts, lost, order, bodies, motions, movers, ready, steps):
+def finish_together(leads, board, firsts, found, order, bodies, motions, movers, steps):
     """The same by several threads: part p from firsts[p] to before firsts[p + 1]."""
-    part = take_part(board, len(lost))
+    part = take_part(board, len(found))
     while part >= 0:
-        lost[part] = finish(firsts[part], firsts[part + 1], order, bodies, motions, movers, ready, part, steps)
+        found[part] = finish(firsts[part], firsts[part + 1], order, bodies, motions, movers, steps)
         count_up(board, DONE)
-        part = take_part(board, len(lost))
+        part = take_part(board, len(found))
     if leads:
-        wait_for_all(board, len(lost))
+        wait_for_all(board, len(found))
