@@ -6,7 +6,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from engine.islands import COARSE
 from engine.records import joint_records
+from engine.sleeping import touch_weights
 
 if TYPE_CHECKING:
     from engine.settings import Settings
@@ -27,5 +29,7 @@ def break_joints(state: State, settings: Settings) -> None:
     for place in np.flatnonzero(broken):
         record = records[place]
         state.happened.note_broken(record["joint"], record["body1"], record["body2"], forces[place], torques[place])
+        touch_weights(state, np.array([joints["body1"][breakable[place]], joints["body2"][breakable[place]]]))
         state.joints.remove(int(breakable[place]))
         state.stale = True
+        state.islands.flags[COARSE] = 1  # the island may be two by now

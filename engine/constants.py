@@ -138,5 +138,13 @@ while one still sees it move."""
 HIT_SPEED = 1.0
 """Shapes that begin to touch faster than this hit each other [m/s]. Box2D v3's value: below it nobody hears them."""
 
+SLEEP_SPEED = 0.05
+"""Slower than this, as the root mean square of all its mass, a body is still [m/s]: Box2D's figure. Larger: what creeps
+or tips slowly is stopped; smaller: heaps that tremble never sleep."""
+
+SLEEP_TIME = 0.5
+"""So long must all of an island be still before it falls asleep [s]: Box2D's figure. Smaller: what turns back, such as
+a ball at its highest, is stopped."""
+
 MAX_ITERATIONS = 10_000
 """Most passes that may be asked for: a step that lasts minutes is a typing error."""

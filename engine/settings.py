@@ -115,6 +115,9 @@ class Settings:
     maximum_speed: float = number(
         constants.MAXIMUM_SPEED, 100.0, 10000.0, 100.0, "m/s", "of a body: what would be faster is held to it", SOFT
     )
+    sleeping: bool = switch("what lies still falls asleep and costs nothing until something wakes it", SOFT)
+    sleep_speed: float = number(constants.SLEEP_SPEED, 0.0, 1.0, 0.01, "m/s", "below it a body is still", SOFT)
+    sleep_time: float = number(constants.SLEEP_TIME, 0.1, 10.0, 0.1, "s", "so long must a body be still to sleep", SOFT)
     friction_mixing: str = choice("geometric", mixing.RULES, "the friction of two shapes that touch")
     restitution_mixing: str = choice("greatest", mixing.RULES, "the restitution of two shapes that touch", SOFT)
     wind: tuple[float, float] = vector((0.0, 0.0), 30.0, "m/s", "of the air; moves bodies that have drag")

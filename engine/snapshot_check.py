@@ -9,6 +9,7 @@ import numpy as np
 
 from engine import validate
 from engine.effects import BODY_PROPERTIES, SHAPE_PROPERTIES
+from engine.effects.sleeping import SOLVER
 from engine.lacking import refuse_lacking
 from engine.narrow_phase import COLLIDER_OF
 from engine.settings import Settings
@@ -23,6 +24,7 @@ from engine.state import State
 from engine.tables import BODY_KINDS, HELD, HULL_POINTS, JOINT_KINDS
 from engine.touching import PAIR
 
+FORCES = ("force_x", "force_y", "torque")
 MAY_BE_INFINITE = ("mass", "inertia")  # of static bodies
 STORAGE_OF = {"shape": "shapes", "body": "bodies"}  # what the columns of a pair are serials of
 SIZES = {  # what a shape cannot be without
@@ -57,6 +59,7 @@ def check_tables(settings: Settings, tables: Mapping[str, np.ndarray]) -> None:
     check_arbiters(tables)
     check_fluids(tables)
     check_touching(tables)
+    check_sleep(settings, tables)
     for name in ("step_count", "time", "last_dt", "explosions"):
         if tables[name] < 0:
             raise refuse(name, ">= 0")
@@ -167,6 +170,28 @@ def check_joints(tables: Mapping[str, np.ndarray]) -> None:
         for field in ("hertz", "damping_ratio", "max_motor"):
             if (part[field] < 0).any():
                 raise refuse(f"joints.{name}", f"of no negative {field}")
+
+
+def check_sleep(settings: Settings, tables: Mapping[str, np.ndarray]) -> None:
+    """Who sleeps may, does not move, and touches or is joined to nobody who has weight and is awake."""
+    motions, bodies = tables["bodies.motions"], tables["bodies.bodies"]
+    if (motions["still"] < 0).any():
+        raise refuse("bodies.motions", "of no negative time that a body has been still")
+    for name in ("asleep", "disturbed"):
+        if not np.isin(tables.get(f"bodies.{name}", 0), (0, 1)).all():
+            raise refuse(f"bodies.{name}", "of 0 and 1")
+    asleep = tables.get("bodies.asleep", np.zeros(len(bodies), np.uint8)) != 0
+    weighs = (motions["inverse_mass"] > 0) & (bodies["serial"] >= 0)
+    if asleep.any() and not (settings.sleeping and settings.solver == SOLVER):
+        raise refuse("bodies.asleep", "of bodies that are awake, with these settings")
+    moving = [motions[name] != 0 for name in ("vx", "vy", "w")] + [bodies[name] != 0 for name in FORCES]
+    if (asleep & (~weighs | np.any(moving, axis=0))).any():
+        raise refuse("bodies.asleep", "of bodies that weigh something, without speed and force")
+    joints = tables["joints.joints"]
+    for name, rows in (("arbiters", tables["arbiters"]), ("joints.joints", joints[joints["serial"] >= 0])):
+        one, other = rows["body1"], rows["body2"]
+        if (weighs[one] & weighs[other] & (asleep[one] != asleep[other])).any():
+            raise refuse(name, "between bodies that sleep both or neither")
 
 
 def check_fluids(tables: Mapping[str, np.ndarray]) -> None:

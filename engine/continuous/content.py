@@ -19,7 +19,7 @@ from engine.continuous.stops import (
     stop_at_kinematic,
 )
 from engine.narrow_phase import COLLIDER_OF
-from engine.tables import empty
+from engine.tables import DYNAMIC, empty
 
 if TYPE_CHECKING:
     from engine.state import State
@@ -65,14 +65,16 @@ def read_content(state: State) -> Content:
     slowest, reaches = empty(len(bodies) + 1, SLOWEST), np.zeros(len(shapes))
     first_shapes = np.searchsorted(owners[by_body], np.arange(len(bodies) + 1))
     shape_rows = np.ascontiguousarray(order[by_body])
+    weighs = (bodies["kind"] == DYNAMIC) & (state.bodies.tables["motions"]["inverse_mass"] > 0.0)
+    dynamic = state.bodies.order[weighs[state.bodies.order]]  # of those that sleep now, too
     measure_bodies(
-        state.dynamic, first_shapes, shape_rows, shapes, state.hulls.tables["hulls"], bodies,
+        dynamic, first_shapes, shape_rows, shapes, state.hulls.tables["hulls"], bodies,
         CONTINUOUS_WAY, CONTINUOUS_DEPTH, slowest, reaches,
     )  # fmt: skip
     filtered = "filters" in state.effects
     category, mask, group = (state.shapes.ensure(n) if filtered else None for n in ("category", "mask", "group"))
     return Content(
-        slowest, np.empty(len(state.dynamic), np.int64), first_shapes, shape_rows, reaches,
+        slowest, np.empty(len(dynamic), np.int64), first_shapes, shape_rows, reaches,
         np.flatnonzero(state.groups == STATIC_GROUP), order[state.groups == KINEMATIC_GROUP],
         order[state.groups == DYNAMIC_GROUP], np.ones(len(bodies)), np.full((len(bodies), 2), -1),
         np.full(len(bodies), -1),
@@ -127,6 +129,7 @@ def encounters_of(state: State, content: Content, fast: np.ndarray, hurry: np.nd
     """(E,) ENCOUNTER: which dynamic shapes may meet, one of a bullet."""
     c = content
     bullet = state.bodies.ensure("bullet")
+    rest_sleepers(state)
     arguments = (
         fast, hurry, c.first_shapes, c.shape_rows, c.reaches, c.dynamic, np.empty((len(c.dynamic), 4)), bullet,
         state.shapes.tables["shapes"], state.bodies.tables["bodies"], state.scratch["movers"], COLLIDER_OF, *c.filters,
@@ -138,3 +141,13 @@ def encounters_of(state: State, content: Content, fast: np.ndarray, hurry: np.nd
         if found <= room:
             return pairs[:found]
         room = 2 * found
+
+
+def rest_sleepers(state: State) -> None:
+    """What sleeps stays where it is: its mover is that of an earlier step."""
+    asleep = state.bodies.columns.get("asleep")
+    if asleep is not None:
+        moved, rows = state.scratch["movers"], np.flatnonzero(asleep)
+        for name in ("vx", "vy", "w", "turned", "dx", "dy", "sine"):
+            moved[name][rows] = 0.0
+        moved["cosine"][rows] = 1.0

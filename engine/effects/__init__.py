@@ -18,6 +18,7 @@ from engine.effects.magnets import MAGNETS
 from engine.effects.motion import ANGULAR_DAMPING, GRAVITY, GRAVITY_SCALE, LINEAR_DAMPING
 from engine.effects.others import DIAGNOSTICS, EVENTS
 from engine.effects.point_gravity import POINT_GRAVITY
+from engine.effects.sleeping import SLEEPING
 
 EFFECTS: tuple[Effect, ...] = (
     GRAVITY,
@@ -45,6 +46,7 @@ EFFECTS: tuple[Effect, ...] = (
     BULLETS,
     PASSING,
     EVENTS,
+    SLEEPING,
     DIAGNOSTICS,
 )
 

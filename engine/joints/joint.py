@@ -215,7 +215,7 @@ def add(
             if "max_spring" not in written:
                 part["max_spring"][row] = NEVER
             settle(part[row], kind.along if table == "slides" else 1)
-    world._content_changed()
+    world._joined(row)
     return kind(world, row, int(storage.tables["joints"]["serial"][row]))
 
 

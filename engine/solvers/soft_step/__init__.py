@@ -82,7 +82,7 @@ def make_plan(state: State, settings: Settings) -> Plan:
     p = state.precision
     pairs, layout, joint_layout, steps = state.arbiters, state.layout, state.joint_layout, state.steps
     bodies, motions = state.bodies.tables["bodies"], state.bodies.tables["motions"]
-    threads = usable(state.threads, len(state.bodies.order))
+    threads = usable(state.threads, len(state.awake_order))
     blocks = layout.blocks
     bounces = rows(state, "bounces", tables.restitution_dtype(p), blocks, "restitution")
     colours = int((np.diff(layout.firsts) > 0).sum()) + joint_layout.stages
@@ -146,7 +146,7 @@ def joint_arguments(state: State) -> tuple:
 
 def solve(state: State, settings: Settings) -> None:
     """All substeps."""
-    state.follow_colours()
+    state.follow_contacts()
     plan = plan_of(state, settings)
     if plan.threads == 1:
         run(*plan.arguments)
@@ -169,18 +169,24 @@ def update_positions(state: State, settings: Settings) -> int:
     content = content_of(state)
     if content is not None and count:
         stop_fast(state, content, count)
-    bodies, motions, order = state.bodies.tables["bodies"], state.bodies.tables["motions"], state.bodies.order
+    bodies, motions, order = state.bodies.tables["bodies"], state.bodies.tables["motions"], state.awake_order
     moved = state.scratch["movers"]
     threads = usable(state.threads, len(order))
     if threads == 1:
-        lost = movers.finish(0, len(order), order, bodies, motions, moved)
+        ready = movers.finish(0, len(order), order, bodies, motions, moved, state.timed)
     else:
         parts = PARTS_A_THREAD * threads
         found = np.empty(parts, np.int64)
         firsts = shares(len(order), parts)
-        share(threads, movers.finish_together, new_counters(2), firsts, found, order, bodies, motions, moved)
-        lost = -1 if found.max() < 0 else found[found >= 0].min()
-    return int(order[lost]) if lost >= 0 else -1
+        share(
+            threads, movers.finish_together, new_counters(2), firsts, found, order, bodies, motions, moved,
+            state.timed,
+        )  # fmt: skip
+        ready = found.sum() if found.min() >= 0 else found[found < 0].max()  # of the lost the first
+    if ready < 0:
+        return int(order[-1 - ready])
+    state.ready[0] = ready
+    return -1
 
 
 SOFT_STEP = Solver(

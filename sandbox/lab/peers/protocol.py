@@ -57,7 +57,7 @@ def bias_factor(joint: RevoluteJoint) -> float:
 
 
 ON_REQUEST = frozenset({"diagnostics", "events", "explosions"})  # move nothing in a step
-OUR_WAY = frozenset({"chains", "continuous collision"})  # how we solve what others solve their way
+OUR_WAY = frozenset({"chains", "continuous collision", "sleeping"})  # how we solve what others solve their way
 
 
 def refuse_effects(world: World, known: frozenset[str]) -> None:

@@ -44,12 +44,13 @@ class Chains:
         )  # fmt: skip
 
 
-def find_chains(state: State, settings: Settings) -> Chains | None:
-    """What is to be solved at once, as the settings say; None where nothing is."""
-    if settings.joint_solving == "iterated" or "chains" in state.suppressed or not state.joints.count:
+def find_chains(state: State, settings: Settings, order: np.ndarray) -> Chains | None:
+    """Which of the joints in these rows are to be solved at once, as the settings say; None where none are."""
+    if settings.joint_solving == "iterated" or "chains" in state.suppressed or not len(order):
         return None
-    candidates = choose.islands_of(state, choose.rigid_joints(state), settings.joint_solving == "auto")
-    islands = [(island, order) for island in candidates if (order := choose.order_of(state, island)) is not None]
+    candidates = choose.islands_of(state, choose.rigid_joints(state, order), settings.joint_solving == "auto")
+    found = [(island, choose.order_of(state, island)) for island in candidates]
+    islands = [(island, order) for island, order in found if order is not None]
     if settings.joint_solving == "auto" and islands:
         hertz = stiffness(settings, float(state.steps["dt"][0])).joint_hertz
         islands = [one for one in islands if _stretch(state, settings, *one, hertz) > choose.MOST_STRETCH]

@@ -33,9 +33,9 @@ FILLING = 4
 RIGID = (REVOLUTE, DISTANCE, PRISMATIC, WELD, WHEEL)
 
 
-def rigid_joints(state: State) -> np.ndarray:
-    """Rows of the joints that hold something rigidly, whatever force it takes, in the order of creation."""
-    order, tables = state.joints.order, state.joints.tables
+def rigid_joints(state: State, order: np.ndarray) -> np.ndarray:
+    """Those of the joints in these rows that hold something rigidly, whatever force it takes."""
+    tables = state.joints.tables
 
     def column(table: str, name: str) -> np.ndarray:
         return tables[table][name][order]
