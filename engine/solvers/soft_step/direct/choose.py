@@ -1,13 +1,12 @@
 """Which islands of joints are solved at once: those that would give way if their joints were visited one by one.
 
 A joint that carries a load F gives way by F K / w^2, K being what an impulse of 1 changes of its rate and w = 2 pi f
-its frequency (docs/soft_step.md). The loads are those of gravity, from the system that would be solved: what hangs,
-hangs on its joints, and what falls freely carries nothing. So a scene calls for it by what it is made of.
+its frequency (docs/soft_step.md). The loads are those of gravity, as if the island hung in a line from what it is
+joined to: chains.py finds them from the system that would be solved. So a scene calls for it by what it is made of.
 """
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -135,8 +134,3 @@ def order_of(state: State, island: Island) -> Order | None:
     for member, others in neighbours.items():
         others.discard(member)
     return least_degree(neighbours, FILLING * len(neighbours) + 2 * FILLING)
-
-
-def gives_way(loads: np.ndarray, diagonals: np.ndarray, hertz: float) -> float:
-    """How far the joint that gives way most would, visited one by one [m]. loads (n, 3): force of each row."""
-    return float(np.abs(loads * diagonals).max(initial=0.0)) / (2.0 * math.pi * hertz) ** 2
