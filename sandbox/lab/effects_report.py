@@ -179,6 +179,7 @@ CALLED_FOR_BY = {
     "buoyancy": "`World.create_fluid`",
     "explosions": "`World.explode`",
     "friction": "`friction` of a shape",
+    "continuous collision": "`continuous` of the world, where dynamic bodies and shapes that nothing moves are",
     "revolute joints": "`World.create_joint_revolute`",
     "revolute motors": "`motor_speed` of a revolute joint",
     "joined without colliding": "a joint with `collide_connected=False`",
