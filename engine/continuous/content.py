@@ -44,7 +44,7 @@ class Content(NamedTuple):
         np.ndarray
     )  # (B, 2) int64: which two shapes overlapped already and keep it from going on; -1 outside of a sweep
     carriers: np.ndarray  # (B,) int64: the kinematic body that carries it on; -1
-    filters: tuple[Any, Any, Any, Any]  # joined, category, mask, group: None where not called for
+    filters: tuple[Any, Any, Any, Any]  # joined, category, mask, group: of length 0 where not called for
 
 
 def content_of(state: State) -> Content | None:
@@ -72,13 +72,15 @@ def read_content(state: State) -> Content:
         CONTINUOUS_WAY, CONTINUOUS_DEPTH, slowest, reaches,
     )  # fmt: skip
     filtered = "filters" in state.effects
-    category, mask, group = (state.shapes.ensure(n) if filtered else None for n in ("category", "mask", "group"))
+    nothing = np.empty(0, np.int64)
+    category, mask, group = (state.shapes.ensure(n) if filtered else nothing for n in ("category", "mask", "group"))
+    joined = np.empty((0, 2), np.int64) if state.joined is None else state.joined
     return Content(
         slowest, np.empty(len(dynamic), np.int64), first_shapes, shape_rows, reaches,
         np.flatnonzero(state.groups == STATIC_GROUP), order[state.groups == KINEMATIC_GROUP],
         order[state.groups == DYNAMIC_GROUP], np.ones(len(bodies)), np.full((len(bodies), 2), -1),
         np.full(len(bodies), -1),
-        (state.joined, category, mask, group),
+        (joined, category, mask, group),
     )  # fmt: skip
 
 
@@ -105,23 +107,21 @@ def stop_fast(state: State, content: Content, count: int) -> None:
             fast, *of_shapes, c.fixed, state.shapes.order, state.bounds, *things, COLLIDER_OF, *c.filters, c.until,
             c.sunk, scratch,
         )  # fmt: skip
-    carriers: Any = None
     if len(c.kinematic):
-        carriers = c.carriers
         stop_at_kinematic(
-            fast, *of_shapes, c.kinematic, *things, COLLIDER_OF, *c.filters, c.until, c.sunk, carriers, scratch
+            fast, *of_shapes, c.kinematic, *things, COLLIDER_OF, *c.filters, c.until, c.sunk, c.carriers, scratch
         )  # fmt: skip
     stopping = fast
     if "bullets" in state.effects:
         hurry = np.zeros(len(bodies), np.bool_)
         hurry[fast] = True
         pairs = encounters_of(state, c, fast, hurry)
-        stop_at_each_other(pairs, *things, c.until, c.sunk, carriers, scratch)
+        stop_at_each_other(pairs, *things, c.until, c.sunk, c.carriers, scratch)
         met = np.concatenate([shapes["body"][pairs["shape1"]], shapes["body"][pairs["shape2"]]])
         stopping = np.concatenate([fast, np.setdiff1d(met, fast)])
     part_sunk(stopping, *things, state.bodies.tables["motions"], c.until, c.sunk, scratch)
     find_contacts_anew(state.arbiters.rows, state.arbiters.count, c.until)
-    hold_back(stopping, bodies, moved, c.until, carriers)
+    hold_back(stopping, bodies, moved, c.until, c.carriers)
     c.carriers[fast] = -1
 
 

@@ -39,15 +39,18 @@ def write_path(body, mover, reach, path):
 
 @kernel
 def may_collide(row1, row2, shapes, bodies, colliders, joined, category, mask, group):
-    """Whether two shapes collide at all, as for the pairs of the broad phase. joined, category, ...: may be None."""
+    """Whether two shapes collide at all, as for the pairs of the broad phase.
+
+    joined, category, mask, group: of length 0 where not called for; None would mean to compile all of this once more.
+    """
     shape1, shape2 = shapes[row1], shapes[row2]
     if not may_touch(shape1, shape2, colliders):
         return False
-    if joined is not None:
+    if len(joined) > 0:
         serial1, serial2 = bodies[shape1.body].serial, bodies[shape2.body].serial
         if is_listed(joined, min(serial1, serial2), max(serial1, serial2)):
             return False
-    if category is not None:
+    if len(category) > 0:
         return may_meet(row1, row2, category, mask, group)
     return True
 
@@ -161,10 +164,7 @@ def write_stop(pair, shapes, hulls, bodies, movers, until, scratch):
 
 @kernel
 def stop_at_each_other(encounters, shapes, hulls, bodies, movers, until, sunk, carriers, scratch):
-    """Stops both bodies of every encounter, the earliest first: who has stopped is met, or missed, where it stands.
-
-    carriers: None where nothing is kinematic.
-    """
+    """Stops both bodies of every encounter, the earliest first: who has stopped is met, or missed, where it stands."""
     for k in range(len(encounters)):
         pair = encounters[k]
         write_stop(pair, shapes, hulls, bodies, movers, until, scratch)
@@ -181,8 +181,7 @@ def stop_at_each_other(encounters, shapes, hulls, bodies, movers, until, sunk, c
             if pair.time < until[body]:
                 until[body] = pair.time
                 sunk[body, 0], sunk[body, 1] = -1, -1
-                if carriers is not None:
-                    carriers[body] = -1  # it does not come so far
+                carriers[body] = -1  # it does not come so far
         if pair.sunk != 0:
             sunk[body1, 0], sunk[body1, 1] = pair.shape1, pair.shape2
         pair.time = DONE
@@ -223,7 +222,7 @@ def hold_back(rows, bodies, movers, until, carriers):
             mover = movers[row]
             mover.dx, mover.dy = np.float64(mover.dx) * time, np.float64(mover.dy) * time
             mover.turned = np.float64(mover.turned) * time
-            if carriers is not None and carriers[row] >= 0:
+            if carriers[row] >= 0:
                 carry(bodies[row], mover, bodies[carriers[row]], movers[carriers[row]], time)
         until[row] = 1.0
 

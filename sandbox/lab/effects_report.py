@@ -179,6 +179,7 @@ CALLED_FOR_BY = {
     "buoyancy": "`World.create_fluid`",
     "explosions": "`World.explode`",
     "friction": "`friction` of a shape",
+    "continuous collision": "`continuous` of the world, where dynamic bodies and shapes that nothing moves are",
     "revolute joints": "`World.create_joint_revolute`",
     **{f"{kind} joints": f"`World.create_joint_{kind}`" for kind in JOINT_KINDS[1:]},
     "joint springs": "`hertz` of a joint; welds and rods have stiff ones",

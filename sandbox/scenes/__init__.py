@@ -8,6 +8,7 @@ from sandbox.scenes import the_talk
 from sandbox.scenes import stacking
 from sandbox.scenes import shapes
 from sandbox.scenes import effects
+from sandbox.scenes import continuous
 from sandbox.scenes import events
 from sandbox.scenes import benchmark
 
@@ -19,6 +20,7 @@ __all__ = [
     "Scene",
     "UnknownScene",
     "benchmark",
+    "continuous",
     "effects",
     "events",
     "find_scene",

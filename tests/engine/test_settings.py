@@ -148,6 +148,8 @@ def demanding(solver: str, **settings: Any) -> World:
     if solver == "soft_step":
         world.create_body(Circle(0.4), position=(8, 0.6), restitution=0.6, friction=0.8)
         world.create_body(Circle(0.4), position=(9, 0.4), restitution=0.2, velocity=(-2, 0))
+        world.create_body(Box(0.01, 2), position=(12, 6), kind="static")
+        world.create_body(Circle(0.1), position=(6, 6), velocity=(600, 0))
     for k in range(3):
         world.create_body(Box(1, 1), position=(-8 + 0.02 * k, 0.505 + 1.005 * k))
     return world

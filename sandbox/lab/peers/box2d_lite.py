@@ -14,7 +14,7 @@ from engine import Box, RevoluteJoint, World
 from sandbox.lab.peers.protocol import CannotMirror, PeerError, bias_factor, passes, refuse_effects
 from sandbox.lab.timing import Times
 
-KNOWN = frozenset({"gravity", "friction", "revolute joints", "joined without colliding"})
+KNOWN = frozenset({"gravity", "friction", "continuous collision", "revolute joints", "joined without colliding"})
 DRIVER = Path(__file__).with_name("box2d_lite_driver.cpp")
 PARTS = ("include/box2d-lite/World.h", "src/World.cpp")  # a checkout has these
 FLAGS = ("-O3", "-DNDEBUG")  # CMake's Release, which is what its own build makes

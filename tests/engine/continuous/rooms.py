@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from typing import Any
 
@@ -27,7 +28,7 @@ def add_segments(world: World, pieces: int) -> None:
     walls = world.create_body(kind="static")
     for a, b in SIDES:
         points = np.linspace(a, b, pieces + 1)
-        for p, q in zip(points, points[1:], strict=False):
+        for p, q in itertools.pairwise(points):
             walls.add_shape(Segment(tuple(p), tuple(q)))
 
 

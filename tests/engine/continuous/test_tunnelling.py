@@ -13,8 +13,8 @@ from tests.engine.continuous.rooms import HALF, ROOMS, THROWN, core_points, outs
 from tests.engine.worlds import DT, PRECISIONS, floor, run
 
 SUNK = 0.02
-"""How far a corner may be in a wall [m]: 5 mm is what stops it, and half as much more in each step until contacts push it
-out; they are soft."""
+"""How far a corner may be in a wall [m]: 5 mm is what stops it, and half as much more in each step until contacts push
+it out; they are soft."""
 
 
 def furthest(body: Body, steps: int) -> float:
