@@ -8,6 +8,13 @@ from recordings import schema
 from recordings.stored_table import StoredTable
 
 
+def nobody_asleep(bodies: StoredTable) -> dict[str, StoredTable]:
+    """The table SLEEP of a recording of version 1 or 2, in whose time no body slept. bodies: its table BODIES."""
+    rows = np.zeros(len(bodies.rows), schema.SLEEP.dtype)
+    rows.flags.writeable = False
+    return {schema.SLEEP.path: StoredTable(bodies.steps, bodies.starts, rows)}
+
+
 def upgraded(roster: StoredTable) -> dict[str, StoredTable]:
     """The tables ON_CHANGE of a recording of version 1, where each body had one shape, at its origin."""
     bodies = np.empty(len(roster.rows), schema.ROSTER.dtype)

@@ -14,7 +14,8 @@ import numpy as np
 from engine import CONTACT_RECORD, JOINT_RECORD
 
 APPLICATION = "tumble"  # rerun's application id: which program a file belongs to
-VERSION = 2  # of this schema; a reader refuses newer ones and knows all older ones. 1: every body had one shape
+VERSION = 3  # of this schema; a reader refuses newer ones and knows all older ones. 1: every body had one shape;
+# 2: it was not told who sleeps
 
 STEP_TIMELINE = "step"  # steps since the scene began
 TIME_TIMELINE = "sim_time"  # simulated time, rounded to ns: to look at (STEPS.time is exact)
@@ -78,6 +79,7 @@ BODIES = Table(
         ]
     ),
 )
+SLEEP = Table("/state/sleep", "tumble.Sleep", np.dtype([("asleep", "u1")]))  # 1: the body sleeps
 ROSTER = Table(
     "/state/roster",
     "tumble.Roster",
@@ -140,5 +142,6 @@ STEPS = Table(
         ]
     ),
 )
-EVERY_STEP = (BODIES, CONTACTS, JOINTS, STEPS)  # tables with a row for each step
+EVERY_STEP = (BODIES, SLEEP, CONTACTS, JOINTS, STEPS)  # tables with a row for each step
+EVERY_STEP_2 = (BODIES, CONTACTS, JOINTS, STEPS)  # of versions 1 and 2
 ON_CHANGE = (ROSTER, PIECES, CORNERS)  # tables with a row where bodies or shapes came or went, all of them then
