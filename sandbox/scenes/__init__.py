@@ -8,6 +8,7 @@ from sandbox.scenes import the_talk
 from sandbox.scenes import stacking
 from sandbox.scenes import shapes
 from sandbox.scenes import effects
+from sandbox.scenes import sleeping
 from sandbox.scenes import benchmark
 
 # isort: on
@@ -22,6 +23,7 @@ __all__ = [
     "find_scene",
     "scene",
     "shapes",
+    "sleeping",
     "stacking",
     "the_talk",
 ]
