@@ -32,9 +32,15 @@ def whole_content(path: Path, tables: dict[str, StoredTable]) -> StoredTable:
 
 
 def check_steps(
-    path: Path, tables: dict[str, StoredTable], commands: dict[int, list[str]], content: StoredTable
+    path: Path,
+    tables: dict[str, StoredTable],
+    every_step: tuple[schema.Table, ...],
+    commands: dict[int, list[str]],
+    content: StoredTable,
 ) -> None:
     """Compares each step's checksum with its content, and drops the commands of steps that were cut off.
+
+    every_step: the tables that have a row for each step, bodies first and the steps' own last.
 
     Raises:
         RecordingError: they differ.
@@ -43,9 +49,13 @@ def check_steps(
     for step in [step for step in commands if not len(steps) or step > steps[-1]]:
         del commands[step]
     for step in map(int, steps):
-        parts = [tables[table.path].at(step) for table in schema.EVERY_STEP]
+        parts = [tables[table.path].at(step) for table in every_step]
         numbers = parts[-1].copy()
-        if len(numbers) != 1 or len(parts[0]) != len(tables[schema.ROSTER.path].at(step)):
+        bodies = len(tables[schema.ROSTER.path].at(step))
+        of_bodies = [
+            len(rows) for rows, table in zip(parts, every_step, strict=True) if table in (schema.BODIES, schema.SLEEP)
+        ]
+        if len(numbers) != 1 or any(number != bodies for number in of_bodies):
             raise RecordingError(f"{path}: damaged at step {step}")
         expected = int(numbers["checksum"][0])
         numbers["checksum"] = 0

@@ -48,6 +48,8 @@ class StateLike(Protocol):
     @property
     def angular_velocities(self) -> np.ndarray: ...  # (N,) [rad/s]
     @property
+    def asleep(self) -> np.ndarray: ...  # (N,) bool
+    @property
     def shape_serials(self) -> np.ndarray: ...  # (S,) int64
     @property
     def owners(self) -> np.ndarray: ...  # (S,) int64, index of its body

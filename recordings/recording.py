@@ -27,6 +27,7 @@ class State:
     angles: np.ndarray  # (N,) float64 [rad]
     velocities: np.ndarray  # (N, 2) float64 [m/s]
     angular_velocities: np.ndarray  # (N,) float64 [rad/s]
+    asleep: np.ndarray  # (N,) bool
     shape_serials: np.ndarray  # (S,) int64
     owners: np.ndarray  # (S,) int64, index of its body in the arrays above
     shape_kinds: np.ndarray  # (S,) uint8, index into engine.SHAPE_KINDS
@@ -89,6 +90,7 @@ class Recording:
             angles=contiguous(bodies[:, 2]),
             velocities=contiguous(bodies[:, 3:5]),
             angular_velocities=contiguous(bodies[:, 5]),
+            asleep=contiguous(self._tables[schema.SLEEP.path].at(step)["asleep"] != 0),
             shape_serials=contiguous(pieces["serial"]),
             owners=contiguous(np.searchsorted(roster["serial"], pieces["owner"])),
             shape_kinds=contiguous(pieces["shape_kind"]),

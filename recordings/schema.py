@@ -16,7 +16,7 @@ from engine.events import DTYPES
 
 APPLICATION = "tumble"  # rerun's application id: which program a file belongs to
 VERSION = 3  # of this schema; a reader refuses newer ones and knows all older ones. 1: every body had one shape;
-# 2: no events
+# 2: no events, one kind of joint, and not told who sleeps
 
 STEP_TIMELINE = "step"  # steps since the scene began
 TIME_TIMELINE = "sim_time"  # simulated time, rounded to ns: to look at (STEPS.time is exact)
@@ -82,6 +82,7 @@ BODIES = Table(
         ]
     ),
 )
+SLEEP = Table("/state/sleep", "tumble.Sleep", np.dtype([("asleep", "u1")]))  # 1: the body sleeps
 ROSTER = Table(
     "/state/roster",
     "tumble.Roster",
@@ -126,6 +127,11 @@ ROSTER_1 = Table(  # of version 1
 )
 CONTACTS = Table("/state/contacts", "tumble.Contacts", _packed(CONTACT_RECORD))
 JOINTS = Table("/state/joints", "tumble.Joints", _packed(JOINT_RECORD))
+JOINTS_2 = Table(  # of versions 1 and 2
+    JOINTS.path,
+    JOINTS.archetype,
+    np.dtype([(name, JOINTS.dtype[name]) for name in JOINTS.dtype.names or () if name not in ("turn_impulse", "kind")]),
+)
 STEPS = Table(
     "/state/steps",
     "tumble.Steps",
@@ -144,7 +150,8 @@ STEPS = Table(
         ]
     ),
 )
-EVERY_STEP = (BODIES, CONTACTS, JOINTS, STEPS)  # tables with a row for each step
+EVERY_STEP = (BODIES, SLEEP, CONTACTS, JOINTS, STEPS)  # tables with a row for each step
+EVERY_STEP_2 = (BODIES, CONTACTS, JOINTS_2, STEPS)  # of versions 1 and 2
 ON_CHANGE = (ROSTER, PIECES, CORNERS)  # tables with a row where bodies or shapes came or went, all of them then
 
 

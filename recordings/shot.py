@@ -11,7 +11,7 @@ import numpy as np
 
 from engine import Events
 from recordings.protocols import FrameLike
-from recordings.schema import BODIES, CONTACTS, CORNERS, HAPPENINGS, JOINTS, PIECES, ROSTER, STEPS
+from recordings.schema import BODIES, CONTACTS, CORNERS, HAPPENINGS, JOINTS, PIECES, ROSTER, SLEEP, STEPS
 
 _OVERHEAD = 1024  # bytes a shot takes beside its arrays, roughly
 
@@ -29,6 +29,7 @@ class Shot:
     angles: np.ndarray  # (N,) [rad]
     velocities: np.ndarray  # (N, 2) [m/s]
     angular_velocities: np.ndarray  # (N,) [rad/s]
+    asleep: np.ndarray  # (N,) bool
     shape_serials: np.ndarray  # (S,) int64
     owners: np.ndarray  # (S,) int64, index of its body
     shape_kinds: np.ndarray  # (S,) uint8
@@ -46,7 +47,7 @@ class Shot:
     @property
     def nbytes(self) -> int:
         """Memory that this shot holds, roughly [bytes]."""
-        bodies, pieces = 57 * len(self.serials), 58 * len(self.shape_serials)
+        bodies, pieces = 58 * len(self.serials), 58 * len(self.shape_serials)
         events = sum(rows.nbytes for rows in self.events)
         return _OVERHEAD + bodies + pieces + events + self.corners.nbytes + self.contacts.nbytes + self.joints.nbytes
 
@@ -64,6 +65,7 @@ def take(frame: FrameLike) -> Shot:
         angles=_settled(frame.angles),
         velocities=_settled(frame.velocities),
         angular_velocities=_settled(frame.angular_velocities),
+        asleep=_settled(frame.asleep),
         shape_serials=_settled(frame.shape_serials),
         owners=_settled(frame.owners),
         shape_kinds=_settled(frame.shape_kinds),
@@ -104,6 +106,11 @@ def body_rows(shots: list[Shot]) -> np.ndarray:
     np.concatenate([shot.velocities for shot in shots], out=numbers[:, 3:5])
     np.concatenate([shot.angular_velocities for shot in shots], out=numbers[:, 5])
     return rows
+
+
+def sleep_rows(shots: list[Shot]) -> np.ndarray:
+    """The SLEEP table of all shots, one after the other."""
+    return np.concatenate([shot.asleep for shot in shots]).astype(np.uint8).view(SLEEP.dtype)
 
 
 def contact_rows(shots: list[Shot]) -> np.ndarray:

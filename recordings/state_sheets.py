@@ -24,6 +24,7 @@ from recordings.shot import (
     joint_rows,
     piece_rows,
     roster_rows,
+    sleep_rows,
     step_rows,
 )
 
@@ -73,9 +74,10 @@ def _every_step_sheets(
     shots: list[Shot], contents: list[np.ndarray], happened: list[dict[str, np.ndarray]]
 ) -> Iterator[Sheet]:
     """The tables that have a row for each step."""
-    tables = [body_rows(shots), contact_rows(shots), joint_rows(shots), step_rows(shots)]
+    tables = [body_rows(shots), sleep_rows(shots), contact_rows(shots), joint_rows(shots), step_rows(shots)]
     lengths = [
         [len(shot.serials) for shot in shots],
+        [len(shot.asleep) for shot in shots],
         [len(shot.contacts) for shot in shots],
         [len(shot.joints) for shot in shots],
         [1] * len(shots),

@@ -67,6 +67,7 @@ def compare_states(recorded: StateLike, computed: StateLike) -> Difference | Non
         ("velocity x", recorded.velocities[:, 0], computed.velocities[:, 0]),
         ("velocity y", recorded.velocities[:, 1], computed.velocities[:, 1]),
         ("angular velocity", recorded.angular_velocities, computed.angular_velocities),
+        ("asleep", recorded.asleep, computed.asleep),
     ]
     return (
         _first_difference(step, serials, columns)

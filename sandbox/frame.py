@@ -42,6 +42,7 @@ class Frame:
     angles: np.ndarray  # (N,) float64, unwrapped [rad]
     velocities: np.ndarray  # (N, 2) float64, of the centres of mass [m/s]
     angular_velocities: np.ndarray  # (N,) float64 [rad/s]
+    asleep: np.ndarray  # (N,) bool, who sleeps
     shape_serials: np.ndarray  # (S,) int64, creation number of each piece
     owners: np.ndarray  # (S,) int64, which body it belongs to: index into the arrays above
     shape_kinds: np.ndarray  # (S,) uint8, index into engine.SHAPE_KINDS

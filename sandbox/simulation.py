@@ -118,6 +118,7 @@ class Simulation:
             angles=np.array(world.angles),
             velocities=np.array(world.velocities),
             angular_velocities=np.array(world.angular_velocities),
+            asleep=world.asleep,
             **self._keeper.content(world, self.content)._asdict(),
             bounds=np.array(world.bounds),
             contacts=world.contact_records(),

@@ -10,6 +10,7 @@ from sandbox.scenes import shapes
 from sandbox.scenes import effects
 from sandbox.scenes import continuous
 from sandbox.scenes import events
+from sandbox.scenes import sleeping
 from sandbox.scenes import benchmark
 
 # isort: on
@@ -26,6 +27,7 @@ __all__ = [
     "find_scene",
     "scene",
     "shapes",
+    "sleeping",
     "stacking",
     "the_talk",
 ]

@@ -110,6 +110,7 @@ class RecordedFrames:
             angles=state.angles,
             velocities=state.velocities,
             angular_velocities=state.angular_velocities,
+            asleep=state.asleep,
             shape_serials=state.shape_serials,
             owners=state.owners,
             shape_kinds=state.shape_kinds,

@@ -17,7 +17,7 @@ from tests.engine.trajectories import Reference, load, row
 from tests.sandbox.watching import PRECISIONS
 
 TALK = "sequential_impulses"
-FOLDERS = ("The Talk", "Stacking", "Shapes", "Effects", "Continuous", "Events", "Benchmark")
+FOLDERS = ("The Talk", "Stacking", "Shapes", "Effects", "Continuous", "Events", "Sleeping", "Benchmark")
 CRITERION = Criterion("it is at", lambda world: 0.0, "m", 1.0, at_most=1.0)
 DEMOS = {
     "The Talk/Single Box": "demo1_single_box",
