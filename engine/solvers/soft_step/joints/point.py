@@ -103,7 +103,8 @@ def soften(joint, row, step):
     row.mass_scale = select(tuned, soft.mass_scale, scale)
     scale = select(plain, zero, const(step.joint_impulse_scale, zero))
     row.impulse_scale = select(tuned, soft.impulse_scale, scale)
-    row.stays = select(springy | tuned, one, zero)
+    capped = joint.max_force >= const(0.0, joint.max_force)  # else what it gives is taken back, and it creeps there
+    row.stays = select(springy | tuned | capped, one, zero)
 
 
 @kernel
