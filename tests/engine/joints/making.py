@@ -46,7 +46,9 @@ MAKERS: dict[str, Callable[..., Joint]] = {
     "wheel": lambda world, a, b, **more: world.create_joint_wheel(
         a, b, **{"anchor": tuple(b.position), "axis": (0.3, 1), **more}
     ),
-    "motor": lambda world, a, b, **more: world.create_joint_motor(a, b, **{"max_force": 40.0, "max_torque": 9.0, **more}),
+    "motor": lambda world, a, b, **more: world.create_joint_motor(
+        a, b, **{"max_force": 40.0, "max_torque": 9.0, **more}
+    ),
     "mouse": lambda world, a, b, **more: world.create_joint_mouse(
         a, b, **{"target": middle(a, b), "anchor": off(b), **more}
     ),

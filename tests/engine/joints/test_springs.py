@@ -1,4 +1,4 @@
-"""Springs of joints against the oscillator: step by step, period and decay, how they converge, and how low they hang."""
+"""Springs of joints against the oscillator: step by step, period and decay, how they converge, how low they hang."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ every_spring = pytest.mark.parametrize("name", SPRUNG)
 def substeps_of(x: float, v: float, pull: float, omega: float, damping: float, h: float, count: int):
     """The spring's equation as soft_step takes it, from x [m] and v [m/s] under a pull [m/s^2]: after each substep.
 
-    In the biased pass v comes from an implicit Euler step of x'' = pull - w^2 x - 2 z w x', with which x moves; when the
-    push is taken back a spring, being a force, is an implicit step from where the body has come to.
+    In the biased pass v comes from an implicit Euler step of x'' = pull - w^2 x - 2 z w x', with which x moves; when
+    the push is taken back a spring, being a force, is an implicit step from where the body has come to.
     """
     drag = 1 + 2 * damping * h * omega + (h * omega) ** 2
     for _ in range(count):
