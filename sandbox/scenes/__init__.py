@@ -8,6 +8,7 @@ from sandbox.scenes import the_talk
 from sandbox.scenes import stacking
 from sandbox.scenes import shapes
 from sandbox.scenes import effects
+from sandbox.scenes import joints
 from sandbox.scenes import benchmark
 
 # isort: on
@@ -20,6 +21,7 @@ __all__ = [
     "benchmark",
     "effects",
     "find_scene",
+    "joints",
     "scene",
     "shapes",
     "stacking",

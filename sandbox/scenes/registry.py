@@ -15,6 +15,24 @@ View = tuple[float, float, float]
 
 
 @dataclass(frozen=True)
+class Drive:
+    """Motors of a scene that whoever watches it may drive, all of them at one speed.
+
+    joints: their numbers of creation; low, high: between which speeds [rad/s], or [m/s] where they slide. buttons:
+    speeds by their labels. pulse: seconds after which a button lets go, and the speed is the first button's again;
+    None: it stays. keys: a key for each button that has one.
+    """
+
+    name: str
+    joints: tuple[int, ...]
+    low: float
+    high: float
+    buttons: Mapping[str, float] = field(default_factory=dict)
+    keys: Mapping[str, str] = field(default_factory=dict)
+    pulse: float | None = None
+
+
+@dataclass(frozen=True)
 class Scene:
     """A world's beginning. `build` fills an empty world; `summary` is the first line of its docstring."""
 
@@ -24,6 +42,7 @@ class Scene:
     view: View  # what to look at: centre x, centre y, height [m]
     settings: Mapping[str, Any] = field(default_factory=dict)  # where it departs from a world's defaults
     shows: tuple[Criterion, ...] = ()  # what there is to see, as numbers
+    drives: tuple[Drive, ...] = ()  # motors that the page has controls for
 
     def make(self, *, threads: int = 1, **settings: Any) -> World:
         """A world with this scene in it; settings win over the scene's own. ValueError if they do not suit it."""
@@ -44,12 +63,17 @@ class UnknownScene(ValueError):
 
 
 def scene(
-    name: str, *, shows: Criterion | tuple[Criterion, ...], view: View = (0.0, 7.0, 20.0), **settings: Any
+    name: str,
+    *,
+    shows: Criterion | tuple[Criterion, ...],
+    view: View = (0.0, 7.0, 20.0),
+    drives: tuple[Drive, ...] = (),
+    **settings: Any,
 ) -> Callable[[Build], Build]:
     """Registers the function below as a scene.
 
     shows: what it shows, as a number or several; a test holds it to them, with the settings that the scene asks for.
-    view: centre x, y and height of what to look at [m].
+    view: centre x, y and height of what to look at [m]; drives: motors that the page has controls for.
     """
     criteria = (shows,) if isinstance(shows, Criterion) else tuple(shows)
     if not criteria:
@@ -59,7 +83,7 @@ def scene(
         if name in SCENES:
             raise ValueError(f"name = {name!r}: must be a scene's name that is not taken yet")
         summary = (build.__doc__ or "").strip().split("\n")[0]
-        SCENES[name] = Scene(name, build, summary, view, settings, criteria)
+        SCENES[name] = Scene(name, build, summary, view, settings, criteria, drives)
         return build
 
     return register

@@ -17,7 +17,7 @@ from tests.engine.trajectories import Reference, load, row
 from tests.sandbox.watching import PRECISIONS
 
 TALK = "sequential_impulses"
-FOLDERS = ("The Talk", "Stacking", "Shapes", "Effects", "Benchmark")
+FOLDERS = ("The Talk", "Stacking", "Shapes", "Effects", "Joints", "Benchmark")
 CRITERION = Criterion("it is at", lambda world: 0.0, "m", 1.0, at_most=1.0)
 DEMOS = {
     "The Talk/Single Box": "demo1_single_box",
@@ -36,7 +36,7 @@ BENCHMARK = {  # bodies and joints: Box2D's, but for the washer's empty body and
     "Benchmark/Smash": (9601, 0), "Benchmark/Tumbler": (2027, 1), "Benchmark/Compounds": (3001, 0),
     "Benchmark/Junkyard": (8002, 0), "Benchmark/Spinner": (6078, 1), "Benchmark/Washer": (8101, 0),
     "Benchmark/Pile 1000": (1001, 0), "Benchmark/Pile 5000": (5001, 0), "Benchmark/Pile 20000": (20001, 0),
-    "Benchmark/Circles 5000": (5001, 0), "Benchmark/Mixed Pile": (3001, 0),
+    "Benchmark/Circles 5000": (5001, 0), "Benchmark/Mixed Pile": (3001, 0), "Benchmark/Rain": (2201, 2000),
 }  # fmt: skip
 
 
