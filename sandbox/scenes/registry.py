@@ -16,20 +16,14 @@ View = tuple[float, float, float]
 
 @dataclass(frozen=True)
 class Drive:
-    """Motors of a scene that whoever watches it may drive, all of them at one speed.
-
-    joints: their numbers of creation; low, high: between which speeds [rad/s], or [m/s] where they slide. buttons:
-    speeds by their labels. pulse: seconds after which a button lets go, and the speed is the first button's again;
-    None: it stays. keys: a key for each button that has one.
-    """
+    """Motors of a scene that whoever watches it drives, all of them alike, from -1 to 1."""
 
     name: str
-    joints: tuple[int, ...]
-    low: float
-    high: float
-    buttons: Mapping[str, float] = field(default_factory=dict)
-    keys: Mapping[str, str] = field(default_factory=dict)
-    pulse: float | None = None
+    joints: tuple[int, ...]  # by their numbers of creation
+    gain: float  # their motors' speed at 1 [rad/s], or [m/s] where they slide
+    buttons: Mapping[str, float] = field(default_factory=dict)  # what they set it to, by their labels
+    keys: Mapping[str, str] = field(default_factory=dict)  # by the same labels
+    released: float | None = None  # what it is again a moment after a button was pressed; None: it stays
 
 
 @dataclass(frozen=True)

@@ -269,3 +269,29 @@ def test_a_new_scene_is_one_function() -> None:
 def test_a_scene_must_show_something() -> None:
     with pytest.raises(ValueError, match="must say what the scene shows"):
         scene("Test/Nothing", shows=())
+
+
+# --- driving ----------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", [name for name, entry in SCENES.items() if entry.drives])
+def test_drives_are_motors_of_the_scene(name: str) -> None:
+    entry = SCENES[name]
+    joints = entry.make().joints
+    for drive in entry.drives:
+        assert drive.joints
+        assert drive.gain != 0.0
+        for serial in drive.joints:
+            assert getattr(joints[serial], "motor_speed", None) is not None
+        assert all(-1.0 <= value <= 1.0 for value in drive.buttons.values())
+        assert set(drive.keys) <= set(drive.buttons)
+    labels = [label for drive in entry.drives for label in drive.buttons]
+    keys = [key for drive in entry.drives for key in drive.keys.values()]
+    assert len(set(labels)) == len(labels)
+    assert len(set(keys)) == len(keys)
+
+
+def test_the_scenes_of_the_issue_can_be_driven() -> None:
+    assert {name for name, entry in SCENES.items() if entry.drives} == {
+        "Joints/Car", "Joints/Pinball", "Joints/Scissor Lift",
+    }  # fmt: skip

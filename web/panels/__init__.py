@@ -2,6 +2,7 @@
 
 from web.panels.accuracy import AccuracyPanel
 from web.panels.desk import Desk, Panel
+from web.panels.drive import DrivePanel
 from web.panels.effects import EffectsPanel
 from web.panels.help import HelpPanel
 from web.panels.physics import PhysicsPanel
@@ -15,6 +16,7 @@ from web.panels.view import ViewPanel
 PANELS: tuple[type[Panel], ...] = (
     StatusPanel,
     SimulationPanel,
+    DrivePanel,
     SpawnPanel,
     PhysicsPanel,
     EffectsPanel,

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from engine import Box, World
-from engine.tables import JOINT_KINDS
 from sandbox.scenes.benchmark.parts import one_steps_fall, outside
 from sandbox.scenes.criterion import Criterion
 from sandbox.scenes.joints.human import BONES, GRIP, POSES, add_human
+from sandbox.scenes.joints.parts import gap
 from sandbox.scenes.registry import scene
 
 SEED = 20261122
@@ -17,13 +17,6 @@ APART, ABOVE = (2.4, 2.6), 16.0  # from one to the next [m]; height of the lowes
 HALF = 0.5 * ACROSS * APART[0] + 1.0  # of the yard's width [m]
 SHELVES, LEDGES, LEDGE = 5, 16, 0.6  # rows of obstacles; how many in a row; width of one [m]
 FOREARM = BONES["near forearm"].top - BONES["near forearm"].bottom  # [m]
-
-
-def widest_gap(world: World) -> float:
-    """The farthest that a joint's anchors are apart [m]."""
-    joints = world.joint_records()
-    assert set(np.unique(joints["kind"])) == {JOINT_KINDS.index("revolute")}
-    return float(np.hypot(joints["x2"] - joints["x1"], joints["y2"] - joints["y1"]).max())
 
 
 @scene(
@@ -36,7 +29,7 @@ def widest_gap(world: World) -> float:
             after=2.0,
             at_most=one_steps_fall(2.0),
         ),
-        Criterion("a joint's anchors are apart by", widest_gap, "m", 2.0, at_most=FOREARM),
+        Criterion("a joint's anchors are apart by", gap, "m", 2.0, at_most=FOREARM),
     ),
     view=(0.0, 19.0, 46.0),
 )

@@ -58,10 +58,9 @@ def add_car(world: World, x: float) -> Body:
         Drive(
             "throttle",
             joints=(0, 1),
-            low=-SPEED,
-            high=SPEED,
-            buttons={"forward": -SPEED, "brake": 0.0, "back": SPEED},
-            keys={"forward": "arrowright", "brake": "arrowdown", "back": "arrowleft"},
+            gain=-SPEED,
+            buttons={"back": -1.0, "brake": 0.0, "forward": 1.0},
+            keys={"back": "arrowleft", "brake": "arrowdown", "forward": "arrowright"},
         ),
     ),
     view=(2.0, 3.0, 42.0),

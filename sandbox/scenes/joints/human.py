@@ -6,6 +6,8 @@ import math
 from collections.abc import Mapping
 from typing import NamedTuple
 
+import numpy as np
+
 from engine import Body, Capsule, World
 
 DENSITY = 150.0  # [kg/m^2]: 70 kg in all
@@ -103,6 +105,18 @@ def add_human(
                 motor_speed=0.0, max_motor_torque=FRICTION, collide_connected=False,
             )  # fmt: skip
     return list(bodies.values())
+
+
+def bent_too_far(world: World, first: int) -> float:
+    """How far a joint of the humans is beyond its limits, at most [rad]; first: the first body of the first of them."""
+    angles = world.angles[first:].reshape(-1, len(BONES))
+    names = list(BONES)
+    beyond = 0.0
+    for k, (name, bone) in enumerate(BONES.items()):
+        if bone.parent:
+            bent = angles[:, k] - angles[:, names.index(parent_of(name))]
+            beyond = max(beyond, float(np.maximum(bone.lower - bent, bent - bone.upper).max()))
+    return beyond
 
 
 def parent_of(name: str) -> str:

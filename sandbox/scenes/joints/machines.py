@@ -40,7 +40,15 @@ def tilt(world: World) -> float:
             at_most=1.05 * STOREYS * BAR * math.sin(UP),
         ),
     ),
-    drives=(Drive("lift", joints=(0,), low=-CREEP, high=CREEP, buttons={"down": -CREEP, "stop": 0.0, "up": CREEP}),),
+    drives=(
+        Drive(
+            "lift",
+            joints=(0,),
+            gain=CREEP,
+            buttons={"down": -1.0, "stop": 0.0, "up": 1.0},
+            keys={"down": "arrowdown", "up": "arrowup"},
+        ),
+    ),
     view=(0.0, 8.5, 21.0),
 )
 def scissor_lift(world: World) -> None:

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 
 import numpy as np
 
 from engine import Body, RevoluteJoint, World
+from engine.tables import REVOLUTE, WELD
 from sandbox.scenes.criterion import Criterion, Limit
 
 Point = tuple[float, float]
@@ -15,8 +15,9 @@ Point = tuple[float, float]
 
 def gap(world: World) -> float:
     """The farthest that the anchors of a joint that holds a point are apart [m]."""
-    found = [math.dist(*joint.anchors) for joint in world.joints if joint.kind in ("revolute", "weld")]
-    return max(found, default=0.0)
+    joints = world.joint_records()
+    joints = joints[(joints["kind"] == REVOLUTE) | (joints["kind"] == WELD)]
+    return float(np.hypot(joints["x2"] - joints["x1"], joints["y2"] - joints["y1"]).max(initial=0.0))
 
 
 def gaps(after: float, at_most: Limit) -> Criterion:
@@ -29,15 +30,6 @@ def turned(world: World, index: int = 0) -> float:
     joint = world.joints[index]
     assert isinstance(joint, RevoluteJoint)
     return joint.angle
-
-
-def beyond_limits(world: World) -> float:
-    """The farthest that a revolute joint has turned beyond its limits [rad]."""
-    beyond = 0.0
-    for joint in world.joints:
-        if isinstance(joint, RevoluteJoint) and joint.lower is not None and joint.upper is not None:
-            beyond = max(beyond, joint.lower - joint.angle, joint.angle - joint.upper)
-    return beyond
 
 
 def between(first: Point, last: Point, count: int) -> list[Point]:

@@ -13,7 +13,6 @@ HALF, TOP = 8.0, 22.0  # half of the table's width, and how high it is [m]
 FLIPPER, HUB = 2.7, (3.6, 3.0)  # length of a flipper; where the right one turns [m]
 REST, KICK = 0.5, 1.0  # how far a flipper hangs, and how far it turns up [rad]
 FLIP = 20.0  # speed of a flipper [rad/s]
-HOLD = 0.15  # that a flipper stays up [s]
 BUMPERS = ((-3.5, 14.5), (3.5, 14.5), (0.0, 17.5), (0.0, 11.5), (-6.0, 11.0), (6.0, 11.0))
 BOUNCE = 1.0  # restitution of a bumper
 BALLS = ((-3.3, 19.0), (0.2, 20.5), (3.4, 18.0))
@@ -38,8 +37,8 @@ def lost(world: World) -> float:
         ),
     ),
     drives=(
-        Drive("left flipper", (0,), -FLIP, FLIP, {"rest": -FLIP, "flip": FLIP}, {"flip": "arrowleft"}, pulse=HOLD),
-        Drive("right flipper", (1,), -FLIP, FLIP, {"rest": FLIP, "flip": -FLIP}, {"flip": "arrowright"}, pulse=HOLD),
+        Drive("left flipper", (0,), FLIP, {"flip left": 1.0}, {"flip left": "arrowleft"}, released=-1.0),
+        Drive("right flipper", (1,), -FLIP, {"flip right": 1.0}, {"flip right": "arrowright"}, released=-1.0),
     ),
     view=(0.0, 11.0, 24.0),
     gravity=(0.0, -6.0),

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from engine import Box, World
 from sandbox.scenes.criterion import Criterion
-from sandbox.scenes.joints.human import BONES, GRIP, POSES, add_human
-from sandbox.scenes.joints.parts import beyond_limits, gaps
+from sandbox.scenes.joints.human import BONES, GRIP, POSES, add_human, bent_too_far
+from sandbox.scenes.joints.parts import gaps
 from sandbox.scenes.registry import scene
 
 STEPS, RISE, TREAD = 10, 0.5, 0.7  # [m]
@@ -15,8 +15,15 @@ TOP = STEPS * RISE
 @scene(
     "Joints/Ragdolls",
     shows=(
-        gaps(5.0, at_most=min(bone.radius for bone in BONES.values())),  # bones still lap over each other
-        Criterion("a joint is bent beyond its limits by", beyond_limits, "rad", 5.0, at_most=0.2, throughout=True),
+        gaps(5.0, at_most=2.0 * min(bone.radius for bone in BONES.values())),  # a bone's thickness, where one lands
+        Criterion(
+            "a joint is bent beyond its limits by",
+            lambda w: bent_too_far(w, 1),
+            "rad",
+            5.0,
+            at_most=0.2,
+            throughout=True,
+        ),
     ),
     view=(0.0, 4.2, 11.5),
 )
