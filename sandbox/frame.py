@@ -62,6 +62,7 @@ class Frame:
     effects: tuple[EffectStatus, ...] = ()  # every effect the engine has; of a recording none
     stage_ms: dict[str, float] = field(default_factory=dict)  # time of each stage of this step [ms]
     commands: tuple[dict, ...] = ()  # commands applied just before this step, as JSON-ready dicts
+    drives: tuple[float, ...] = ()  # how far each of the scene's drives is on, -1 to 1; of a recording none
     content: int = 0  # changes whenever bodies or shapes came or went, or a scene began
     status: Status = Status()
 

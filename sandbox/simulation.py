@@ -85,6 +85,22 @@ class Simulation:
     def release(self, hand_id: int) -> None:
         self.hands.pop(hand_id, None)
 
+    def drive(self, serial: int, speed: float) -> None:
+        """Asks the motor of a joint for a speed; nothing if there is none."""
+        joint = self._motor(serial)
+        if joint is not None:
+            joint.motor_speed = speed
+
+    def _motor(self, serial: int) -> Any:
+        """The joint of that number, None unless it has a motor."""
+        joint = next((joint for joint in self.world.joints if joint.serial == serial), None)
+        return joint if getattr(joint, "motor_speed", None) is not None else None
+
+    def _driven(self) -> tuple[float, ...]:
+        """How far each of the scene's drives is on, by its first motor."""
+        motors = ((drive.gain, self._motor(drive.joints[0])) for drive in self.scene.drives)
+        return tuple(motor.motor_speed / gain if motor is not None else 0.0 for gain, motor in motors)
+
     def body_of(self, hand: Hand) -> Body | None:
         """What a hand holds, None if that was destroyed or cannot be moved."""
         body = self.world.find_body(hand.serial)
@@ -130,6 +146,7 @@ class Simulation:
             effects=world.effects,
             stage_ms={name: 1e3 * seconds for name, seconds in world.stage_times.items()},
             commands=commands,
+            drives=self._driven(),
             content=self.content,
             status=status or Status(),
         )

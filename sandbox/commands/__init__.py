@@ -15,6 +15,7 @@ from engine import validate
 from sandbox.commands.base import REACH, Command, PhysicsCommand
 from sandbox.commands.bomb import Bomb
 from sandbox.commands.dragging import HANDS, Grab, MoveHand, Release
+from sandbox.commands.driving import DriveMotor
 from sandbox.commands.older import modern
 from sandbox.commands.session import (
     SPEEDS,
@@ -41,6 +42,7 @@ __all__ = [
     "SPEEDS",
     "Bomb",
     "Command",
+    "DriveMotor",
     "Grab",
     "LoadScene",
     "MoveHand",
@@ -59,7 +61,7 @@ __all__ = [
     "modern",
 ]
 
-PHYSICS = {kind.name: kind for kind in (Set, Spawn, Bomb, Grab, MoveHand, Release)}
+PHYSICS = {kind.name: kind for kind in (Set, Spawn, Bomb, Grab, MoveHand, Release, DriveMotor)}
 
 
 def command_from_dict(values: Mapping[str, Any]) -> PhysicsCommand:

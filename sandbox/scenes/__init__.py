@@ -8,6 +8,7 @@ from sandbox.scenes import the_talk
 from sandbox.scenes import stacking
 from sandbox.scenes import shapes
 from sandbox.scenes import effects
+from sandbox.scenes import joints
 from sandbox.scenes import continuous
 from sandbox.scenes import events
 from sandbox.scenes import sleeping
@@ -25,6 +26,7 @@ __all__ = [
     "effects",
     "events",
     "find_scene",
+    "joints",
     "scene",
     "shapes",
     "sleeping",

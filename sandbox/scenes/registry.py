@@ -15,6 +15,18 @@ View = tuple[float, float, float]
 
 
 @dataclass(frozen=True)
+class Drive:
+    """Motors of a scene that whoever watches it drives, all of them alike, from -1 to 1."""
+
+    name: str
+    joints: tuple[int, ...]  # by their numbers of creation
+    gain: float  # their motors' speed at 1 [rad/s], or [m/s] where they slide
+    buttons: Mapping[str, float] = field(default_factory=dict)  # what they set it to, by their labels
+    keys: Mapping[str, str] = field(default_factory=dict)  # by the same labels
+    released: float | None = None  # what it is again a moment after a button was pressed; None: it stays
+
+
+@dataclass(frozen=True)
 class Scene:
     """A world's beginning. `build` fills an empty world; `summary` is the first line of its docstring."""
 
@@ -24,6 +36,7 @@ class Scene:
     view: View  # what to look at: centre x, centre y, height [m]
     settings: Mapping[str, Any] = field(default_factory=dict)  # where it departs from a world's defaults
     shows: tuple[Criterion, ...] = ()  # what there is to see, as numbers
+    drives: tuple[Drive, ...] = ()  # motors that the page has controls for
 
     def make(self, *, threads: int = 1, **settings: Any) -> World:
         """A world with this scene in it; settings win over the scene's own. ValueError if they do not suit it."""
@@ -44,12 +57,17 @@ class UnknownScene(ValueError):
 
 
 def scene(
-    name: str, *, shows: Criterion | tuple[Criterion, ...], view: View = (0.0, 7.0, 20.0), **settings: Any
+    name: str,
+    *,
+    shows: Criterion | tuple[Criterion, ...],
+    view: View = (0.0, 7.0, 20.0),
+    drives: tuple[Drive, ...] = (),
+    **settings: Any,
 ) -> Callable[[Build], Build]:
     """Registers the function below as a scene.
 
     shows: what it shows, as a number or several; a test holds it to them, with the settings that the scene asks for.
-    view: centre x, y and height of what to look at [m].
+    view: centre x, y and height of what to look at [m]; drives: motors that the page has controls for.
     """
     criteria = (shows,) if isinstance(shows, Criterion) else tuple(shows)
     if not criteria:
@@ -59,7 +77,7 @@ def scene(
         if name in SCENES:
             raise ValueError(f"name = {name!r}: must be a scene's name that is not taken yet")
         summary = (build.__doc__ or "").strip().split("\n")[0]
-        SCENES[name] = Scene(name, build, summary, view, settings, criteria)
+        SCENES[name] = Scene(name, build, summary, view, settings, criteria, drives)
         return build
 
     return register

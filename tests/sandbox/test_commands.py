@@ -59,6 +59,7 @@ VALID: dict[type[PhysicsCommand], dict[str, st.SearchStrategy]] = {
     ask.Grab: {"hand": HAND, "x": PLACE, "y": PLACE},
     ask.MoveHand: {"hand": HAND, "x": PLACE, "y": PLACE},
     ask.Release: {"hand": HAND},
+    ask.DriveMotor: {"joint": HAND, "speed": number(-1e3, 1e3)},
 }  # fmt: skip
 SOLID_SPAWN = VALID[ask.Spawn] | {
     "shape": st.sampled_from(["box", "circle", "capsule", "polygon"]),
@@ -77,13 +78,14 @@ NO_OPTIONS: list[Any] = ["", "Box", "nope", "precision", "gravity", 0, None, Tru
 NO_SWITCHES: list[Any] = [0, 1, 1.0, "true", "on", None, [], math.nan]
 
 WRONG_FOR_ALL: dict[str, list[Any]] = {
-    "shape": NO_OPTIONS, "kind": [*NO_OPTIONS, "kinematic"], "hand": NO_WHOLE_NUMBERS,
+    "shape": NO_OPTIONS, "kind": [*NO_OPTIONS, "kinematic"], "hand": NO_WHOLE_NUMBERS, "joint": NO_WHOLE_NUMBERS,
     "count": [*NO_WHOLE_NUMBERS, 0, 201], "corners": [*NO_WHOLE_NUMBERS, 2, 9],
 }  # fmt: skip
 OUT_OF_RANGE: dict[str, list[Any]] = {
     "width": [0.0, -1.0, 0.0499, 20.001], "height": [0.0, -1.0, 0.0499, 20.001], "mass": [0.0, -1.0, 9e-4, 1.1e6],
     "friction": [-1e-9, 10.01], "angle": [-1001.0, 1001.0], "vx": [1001.0], "vy": [-1001.0], "spin": [1001.0],
-    "restitution": [-1e-9, 1.01], "rolling_resistance": [-1e-9, 1.01], "rounding": [-1e-9, 20.1],
+    "speed": [-1001.0, 1001.0], "restitution": [-1e-9, 1.01], "rolling_resistance": [-1e-9, 1.01],
+    "rounding": [-1e-9, 20.1],
 }  # fmt: skip
 FIELDS = [pytest.param(kind, field, id=f"{kind.name}-{field}") for kind, fields in VALID.items() for field in fields]
 
@@ -102,6 +104,7 @@ GOOD: dict[type[PhysicsCommand], dict[str, Any]] = {
     ask.Grab: {"hand": 1, "x": 0.0, "y": 4.0},
     ask.MoveHand: {"hand": 1, "x": 2.0, "y": 5.0},
     ask.Release: {"hand": 1},
+    ask.DriveMotor: {"joint": 1, "speed": -4.5},
 }  # fmt: skip
 
 
@@ -184,7 +187,18 @@ def test_commands_of_older_recordings_are_understood(older: dict[str, Any], toda
 
 @pytest.mark.parametrize("kind", VALID)
 def test_ends_of_the_ranges_are_allowed(kind: type[PhysicsCommand]) -> None:
-    ends = {"x": 1e5, "y": -1e5, "width": 0.05, "height": 20.0, "mass": 1e6, "friction": 0.0, "count": 200, "hand": 0}
+    ends = {
+        "x": 1e5,
+        "y": -1e5,
+        "width": 0.05,
+        "height": 20.0,
+        "mass": 1e6,
+        "friction": 0.0,
+        "count": 200,
+        "hand": 0,
+        "joint": 0,
+        "speed": 1e3,
+    }
     kind(**{field: ends.get(field, value) for field, value in GOOD[kind].items()})
 
 
@@ -367,6 +381,34 @@ def test_hands_take_move_and_let_go(simulation: Simulation) -> None:
     simulation.apply(ask.Release(7))
     simulation.apply(ask.Release(7))
     assert simulation.hands == {}
+
+
+def test_motors_are_driven_and_nothing_else() -> None:
+    simulation = Simulation("Joints/Car")
+    (drive,) = simulation.scene.drives
+    assert simulation.frame().drives == (1.0,)
+    for joint in drive.joints:
+        simulation.apply(ask.DriveMotor(joint, -0.5 * drive.gain))
+    assert [joint.motor_speed for joint in simulation.world.joints] == [-0.5 * drive.gain] * 2
+    assert simulation.frame().drives == (-0.5,)
+    before = bits(simulation)
+    simulation.apply(ask.DriveMotor(99, 1.0))  # there is no such joint
+    assert bits(simulation) == before
+    pendulum = Simulation("The Talk/Simple Pendulum")
+    pendulum.apply(ask.DriveMotor(0, 1.0))
+    (joint,) = pendulum.world.joints
+    assert joint.motor_speed is None, "it has no motor, and gets none"
+    assert pendulum.frame().drives == ()
+
+
+def test_a_motor_that_is_driven_back_takes_the_car_back() -> None:
+    simulation = Simulation("Joints/Car")
+    start = simulation.world.positions[1, 0]
+    for joint in (0, 1):
+        simulation.apply(ask.DriveMotor(joint, 20.0))
+    for _ in range(90):
+        simulation.step()
+    assert simulation.world.positions[1, 0] < start - 0.5
 
 
 @pytest.mark.parametrize("command", [ask.Spawn("box", 0, 9, count=4), ask.Bomb(0, 15, 0, 0, -20, 0)])

@@ -17,7 +17,7 @@ from tests.engine.trajectories import Reference, load, row
 from tests.sandbox.watching import PRECISIONS
 
 TALK = "sequential_impulses"
-FOLDERS = ("The Talk", "Stacking", "Shapes", "Effects", "Continuous", "Events", "Sleeping", "Benchmark")
+FOLDERS = ("The Talk", "Stacking", "Shapes", "Effects", "Joints", "Continuous", "Events", "Sleeping", "Benchmark")
 CRITERION = Criterion("it is at", lambda world: 0.0, "m", 1.0, at_most=1.0)
 DEMOS = {
     "The Talk/Single Box": "demo1_single_box",
@@ -36,7 +36,7 @@ BENCHMARK = {  # bodies and joints: Box2D's, but for the washer's empty body and
     "Benchmark/Smash": (9601, 0), "Benchmark/Tumbler": (2027, 1), "Benchmark/Compounds": (3001, 0),
     "Benchmark/Junkyard": (8002, 0), "Benchmark/Spinner": (6078, 1), "Benchmark/Washer": (8101, 0),
     "Benchmark/Pile 1000": (1001, 0), "Benchmark/Pile 5000": (5001, 0), "Benchmark/Pile 20000": (20001, 0),
-    "Benchmark/Circles 5000": (5001, 0), "Benchmark/Mixed Pile": (3001, 0),
+    "Benchmark/Circles 5000": (5001, 0), "Benchmark/Mixed Pile": (3001, 0), "Benchmark/Rain": (2201, 2000),
 }  # fmt: skip
 
 
@@ -274,3 +274,29 @@ def test_a_new_scene_is_one_function() -> None:
 def test_a_scene_must_show_something() -> None:
     with pytest.raises(ValueError, match="must say what the scene shows"):
         scene("Test/Nothing", shows=())
+
+
+# --- driving ----------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", [name for name, entry in SCENES.items() if entry.drives])
+def test_drives_are_motors_of_the_scene(name: str) -> None:
+    entry = SCENES[name]
+    joints = entry.make().joints
+    for drive in entry.drives:
+        assert drive.joints
+        assert drive.gain != 0.0
+        for serial in drive.joints:
+            assert getattr(joints[serial], "motor_speed", None) is not None
+        assert all(-1.0 <= value <= 1.0 for value in drive.buttons.values())
+        assert set(drive.keys) <= set(drive.buttons)
+    labels = [label for drive in entry.drives for label in drive.buttons]
+    keys = [key for drive in entry.drives for key in drive.keys.values()]
+    assert len(set(labels)) == len(labels)
+    assert len(set(keys)) == len(keys)
+
+
+def test_the_scenes_of_the_issue_can_be_driven() -> None:
+    assert {name for name, entry in SCENES.items() if entry.drives} == {
+        "Joints/Car", "Joints/Pinball", "Joints/Scissor Lift",
+    }  # fmt: skip

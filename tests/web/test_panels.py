@@ -12,7 +12,7 @@ import pytest
 
 from engine import SHAPE_KINDS, EffectStatus, Settings
 from engine.settings import describe
-from sandbox.commands import Set, Spawn
+from sandbox.commands import DriveMotor, Set, Spawn
 from sandbox.commands.settings import CHANGEABLE
 from sandbox.scenes import SCENES
 from tests.web.fake_session import EFFECTS, PATIENCE, FakeSession, pyramid, wait_until
@@ -264,3 +264,65 @@ def test_a_setting_that_others_changed_is_followed(page: Page) -> None:
     wait_until(lambda: comes(client, "wind y", "value", 2.5))
     wait_until(lambda: comes(client, "contact damping ratio", "value", 4.0))
     assert session.of(Set) == [], "following is no change of its own"
+
+
+# --- driving ----------------------------------------------------------------------------------------------------------
+
+
+def driven(scene: str) -> tuple[FakeSession, App]:
+    """A page that shows a scene with drives."""
+    session = FakeSession(pyramid(2), scene=scene, drives=tuple(0.0 for _ in SCENES[scene].drives))
+    return session, App(session, port=0)  # type: ignore[arg-type]
+
+
+def folder_is_shown(client: RawClient, name: str) -> bool:
+    """Whether there is a folder of that name, and it is not hidden."""
+    (uuid,) = {m["uuid"] for m in client.messages if m["type"] == "GuiFolderMessage" and m["props"]["label"] == name}
+    changes = [m.get("props") or m.get("updates") for m in client.messages if m.get("uuid") == uuid]
+    return bool([change["visible"] for change in changes if "visible" in change][-1])
+
+
+def test_a_drive_has_a_slider_buttons_and_keys_that_drive_its_motors() -> None:
+    session, app = driven("Joints/Car")
+    (drive,) = SCENES["Joints/Car"].drives
+    try:
+        with raw_client(app.url) as client:
+            assert folder_is_shown(client, "Drive")
+            client.set("throttle", 0.5)
+            assert session.wait_for(DriveMotor, 2) == [DriveMotor(joint, 0.5 * drive.gain) for joint in drive.joints]
+            client.send({"type": "CommandTriggerMessage", "uuid": client.control("throttle: brake")})
+            assert session.wait_for(DriveMotor, 4)[2:] == [DriveMotor(joint, 0.0) for joint in drive.joints]
+            session.publish(drives=(0.75,))
+            wait_until(lambda: comes(client, "throttle", "value", 0.75))
+            assert len(session.of(DriveMotor)) == 4, "following is no driving"
+    finally:
+        app.close()
+        session.close()
+
+
+def test_a_drive_that_does_not_stay_is_let_go_a_moment_later() -> None:
+    session, app = driven("Joints/Pinball")
+    _, right = SCENES["Joints/Pinball"].drives
+    try:
+        with raw_client(app.url) as client:
+            with pytest.raises(LookupError):
+                client.control("left flipper")  # no slider
+            client.send({"type": "CommandTriggerMessage", "uuid": client.control("right flipper: flip right")})
+            assert session.wait_for(DriveMotor, 2) == [DriveMotor(1, right.gain), DriveMotor(1, -right.gain)]
+    finally:
+        app.close()
+        session.close()
+
+
+def test_controls_to_drive_with_come_and_go_with_the_scene(page: Page) -> None:
+    session, client = page
+    assert not folder_is_shown(client, "Drive")
+    with pytest.raises(LookupError):
+        client.control("throttle")
+    session.publish(scene="Joints/Car", drives=(0.0,))
+    wait_until(lambda: (client.read(), folder_is_shown(client, "Drive"))[1])
+    slider = client.control("throttle")
+    session.publish(scene="The Talk/Pyramid", drives=())
+    wait_until(lambda: (client.read(), not folder_is_shown(client, "Drive"))[1])
+    removed = [m["uuid"] for m in client.messages if m["type"] == "GuiRemoveMessage"]
+    assert slider in removed

@@ -2,6 +2,7 @@
 
 from web.panels.accuracy import AccuracyPanel
 from web.panels.desk import Desk, Panel
+from web.panels.drive import DrivePanel
 from web.panels.effects import EffectsPanel
 from web.panels.events import EventsPanel
 from web.panels.help import HelpPanel
@@ -16,6 +17,7 @@ from web.panels.view import ViewPanel
 PANELS: tuple[type[Panel], ...] = (
     StatusPanel,
     SimulationPanel,
+    DrivePanel,
     SpawnPanel,
     PhysicsPanel,
     EffectsPanel,

@@ -13,6 +13,7 @@ from sandbox.scenes.benchmark import smash
 from sandbox.scenes.benchmark import drums
 from sandbox.scenes.benchmark import yards
 from sandbox.scenes.benchmark import piles
+from sandbox.scenes.benchmark import rain
 # isort: on
 
-__all__ = ["drums", "joint_grid", "piles", "pyramids", "smash", "yards"]
+__all__ = ["drums", "joint_grid", "piles", "pyramids", "rain", "smash", "yards"]
