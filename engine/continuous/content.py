@@ -37,7 +37,7 @@ class Content(NamedTuple):
     shape_rows: np.ndarray  # (S,) int64: rows of shapes by body, in the order of creation
     reaches: np.ndarray  # by row of shapes: how far its outline is from its body's centre of mass at most [m]
     fixed: np.ndarray  # ranks of static shapes
-    kinematic: np.ndarray  # rows of kinematic shapes
+    kinematic: np.ndarray  # ranks of kinematic shapes
     dynamic: np.ndarray  # rows of dynamic shapes
     until: np.ndarray  # (B,) when each body stops; 1 outside of a sweep
     sunk: (
@@ -77,7 +77,7 @@ def read_content(state: State) -> Content:
     joined = np.empty((0, 2), np.int64) if state.joined is None else state.joined
     return Content(
         slowest, np.empty(len(dynamic), np.int64), first_shapes, shape_rows, reaches,
-        np.flatnonzero(state.groups == STATIC_GROUP), order[state.groups == KINEMATIC_GROUP],
+        np.flatnonzero(state.groups == STATIC_GROUP), np.flatnonzero(state.groups == KINEMATIC_GROUP),
         order[state.groups == DYNAMIC_GROUP], np.ones(len(bodies)), np.full((len(bodies), 2), -1),
         np.full(len(bodies), -1),
         (joined, category, mask, group),
@@ -109,7 +109,8 @@ def stop_fast(state: State, content: Content, count: int) -> None:
         )  # fmt: skip
     if len(c.kinematic):
         stop_at_kinematic(
-            fast, *of_shapes, c.kinematic, *things, COLLIDER_OF, *c.filters, c.until, c.sunk, c.carriers, scratch
+            fast, *of_shapes, c.kinematic, state.shapes.order, state.bounds, np.empty((len(c.kinematic), 4)), *things,
+            COLLIDER_OF, *c.filters, c.until, c.sunk, c.carriers, scratch
         )  # fmt: skip
     stopping = fast
     if "bullets" in state.effects:

@@ -95,20 +95,38 @@ def stop_at_fixed(
 
 
 @kernel
+def write_paths(ranks, order, bounds, reaches, shapes, movers, paths):
+    """The boxes (M, 4) around all places that shapes, given by rank, come to, from those where they began."""
+    for k in range(len(ranks)):
+        row = order[ranks[k]]
+        mover = movers[shapes[row].body]
+        further = abs(np.float64(mover.turned)) * reaches[row]
+        x, y = np.float64(mover.dx), np.float64(mover.dy)
+        paths[k, 0] = bounds[0, ranks[k]] + min(x, 0.0) - further
+        paths[k, 1] = bounds[1, ranks[k]] + min(y, 0.0) - further
+        paths[k, 2] = bounds[2, ranks[k]] + max(x, 0.0) + further
+        paths[k, 3] = bounds[3, ranks[k]] + max(y, 0.0) + further
+
+
+@kernel
 def stop_at_kinematic(
-    fast, first_shapes, shape_rows, reaches, kinematic, shapes, hulls, bodies, movers, colliders, joined, category,
+    fast, first_shapes, shape_rows, reaches, kinematic, order, bounds, paths, shapes, hulls, bodies, movers, colliders, joined, category,
     mask, group, until, sunk, carriers, scratch,
 ):  # fmt: skip
-    """Stops fast bodies at kinematic ones, whose rows (of shapes) are given, and notes by which they are carried on."""
-    path, other_path = np.empty(4), np.empty(4)
+    """Stops fast bodies at kinematic ones, whose shapes' ranks are given, and notes by which they are carried on.
+
+    bounds (4, S): boxes as the step began; paths (M, 4): scratch.
+    """
+    path = np.empty(4)
+    write_paths(kinematic, order, bounds, reaches, shapes, movers, paths)
     for row in fast:
         for k in range(first_shapes[row], first_shapes[row + 1]):
             own = shape_rows[k]
             write_path(bodies[row], movers[row], reaches[own], path)
-            for other in kinematic:
-                carrier = shapes[other].body
-                write_path(bodies[carrier], movers[carrier], reaches[other], other_path)
-                if overlap(path, other_path):
+            for m in range(len(kinematic)):
+                if overlap(path, paths[m]):
+                    other = order[kinematic[m]]
+                    carrier = shapes[other].body
                     if may_collide(own, other, shapes, bodies, colliders, joined, category, mask, group):
                         stop = stop_of(own, other, shapes, hulls, bodies, movers, until, scratch, until[row])
                         if stop.time < until[row]:
