@@ -199,3 +199,14 @@ def test_only_soft_step_and_only_where_it_is_asked_for() -> None:
         assert "continuous collision" not in {effect.name for effect in world.effects if effect.called_for}
         world.step(DT)
         assert ball.position.x > 10
+
+
+@pytest.mark.parametrize("spin", [600.0, -600.0])
+def test_a_rod_that_leaves_the_floor_while_it_spins_does_leave(spin: float) -> None:
+    # its tips come round faster than contacts can follow: they must not keep it on the spot
+    world = World()
+    floor(world)
+    rod = world.create_body(Box(0.8, 0.02), angle=0.1, velocity=(0, 100), angular_velocity=spin)
+    rod.position = (0, 0.4 * math.sin(0.1) + 0.01 * math.cos(0.1) - 0.003)
+    run(world, 40)
+    assert rod.position.y > 0.8 * 100 * 40 * DT
