@@ -116,6 +116,14 @@ def test_it_stops_where_it_touches_and_keeps_its_velocity() -> None:
     assert tuple(ball.velocity) == (1000.0, 120.0)
 
 
+def test_after_a_bounce_it_goes_its_whole_way_again() -> None:
+    world = World(gravity=(0, 0), precision="double")
+    world.create_body(Segment((5, -9), (5, 9)), kind="static")
+    ball = world.create_body(Circle(0.1), velocity=(900, 0), restitution=1.0)
+    places = [ball.position.x for _ in range(4) if world.step(DT) is None]
+    assert places == pytest.approx([4.9, 4.9, 4.9 - 15.0, 4.9 - 30.0], abs=0.006), "5 mm is what may be sunk in"
+
+
 @pytest.mark.parametrize("speed", [50.0, 1000.0])
 def test_a_bounce_keeps_the_speed(speed: float) -> None:
     world = World(gravity=(0, 0), precision="double")
