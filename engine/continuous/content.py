@@ -104,8 +104,8 @@ def stop_fast(state: State, content: Content, count: int) -> None:
     things = (shapes, hulls, bodies, moved)
     if len(c.fixed):
         stop_at_fixed(
-            fast, *of_shapes, c.fixed, state.shapes.order, state.bounds, *things, COLLIDER_OF, *c.filters, c.until,
-            c.sunk, scratch,
+            fast, c.slowest, *of_shapes, c.fixed, state.shapes.order, state.bounds, *things, COLLIDER_OF, *c.filters,
+            c.until, c.sunk, scratch,
         )  # fmt: skip
     if len(c.kinematic):
         stop_at_kinematic(

@@ -15,6 +15,7 @@ SLOWEST = np.dtype(
     [
         ("way", np.float64),  # a body is fast if it goes further than this in a step [m]
         ("reach", np.float64),  # and its corners are so far from its centre of mass, which counts for spin [m]
+        ("extent", np.float64),  # its outline is so far from there at most [m]
     ]
 )
 """Which way is a long one: one row a body, and one more for all together: the least way and the greatest reach."""
@@ -33,7 +34,7 @@ def measure_bodies(dynamic, first_shapes, shape_rows, shapes, hulls, bodies, sha
     """
     outline, corners = np.empty((8, 5)), np.empty((8, 2))
     for row in range(len(slowest)):
-        slowest[row].way, slowest[row].reach = NO_LIMIT, 0.0
+        slowest[row].way, slowest[row].reach, slowest[row].extent = NO_LIMIT, 0.0, 0.0
     least, furthest = NO_LIMIT, 0.0
     for row in range(len(first_shapes) - 1):
         body = bodies[row]
@@ -48,6 +49,7 @@ def measure_bodies(dynamic, first_shapes, shape_rows, shapes, hulls, bodies, sha
             half = half_width(shape, hulls)
             limit = min(limit, share * half if half > 0.0 else of_line)
             reach = max(reach, reaches[shape_rows[k]] - shape.radius)
+            slowest[row].extent = max(slowest[row].extent, reaches[shape_rows[k]])
         slowest[row].way, slowest[row].reach = limit, reach
         least, furthest = min(least, limit), max(furthest, reach)
     slowest[len(slowest) - 1].way, slowest[len(slowest) - 1].reach = least, furthest

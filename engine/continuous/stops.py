@@ -16,6 +16,7 @@ from engine.pairs import is_listed, may_touch
 from engine.trigonometry import cos_sin
 from engine.vec2 import Vec2, rotate
 
+BLOCK = 16  # static shapes that are looked at together first: those created one after another mostly lie together
 DONE = 3.0  # time of an encounter at which both have stopped
 
 ENCOUNTER = np.dtype(
@@ -72,22 +73,54 @@ def note(sunk, row, stop, own, other):
 
 
 @kernel
+def is_in_way(bounds, rank, path):
+    """Whether the box of that rank, of `bounds` (4, S), overlaps a path."""
+    in_x = bounds[0, rank] <= path[2] and bounds[2, rank] >= path[0]
+    return in_x and bounds[1, rank] <= path[3] and bounds[3, rank] >= path[1]
+
+
+@kernel
+def overlap(a, b):
+    """Whether two boxes (4,) do."""
+    return a[0] <= b[2] and a[2] >= b[0] and a[1] <= b[3] and a[3] >= b[1]
+
+
+@kernel
+def boxes_of_blocks(ranks, bounds):
+    """(N, 4) the boxes around so many shapes each, one after the other of `ranks`."""
+    boxes = np.empty(((len(ranks) + BLOCK - 1) // BLOCK, 4))
+    for place in range(len(ranks)):
+        box, rank = boxes[place // BLOCK], ranks[place]
+        first = place % BLOCK == 0
+        for side in range(2):
+            low, high = np.float64(bounds[side, rank]), np.float64(bounds[side + 2, rank])
+            box[side] = low if first else min(box[side], low)
+            box[side + 2] = high if first else max(box[side + 2], high)
+    return boxes
+
+
+@kernel
 def stop_at_fixed(
-    fast, first_shapes, shape_rows, reaches, ranks, order, bounds, shapes, hulls, bodies, movers, colliders, joined,
-    category, mask, group, until, sunk, scratch,
+    fast, slowest, first_shapes, shape_rows, reaches, ranks, order, bounds, shapes, hulls, bodies, movers, colliders,
+    joined, category, mask, group, until, sunk, scratch,
 ):  # fmt: skip
     """Stops fast bodies at shapes that do not move: ranks, of which `bounds` (4, S) has the boxes."""
-    path = np.empty(4)
+    path, own_path = np.empty(4), np.empty(4)
+    boxes = boxes_of_blocks(ranks, bounds)
     for row in fast:
-        body = bodies[row]
-        for k in range(first_shapes[row], first_shapes[row + 1]):
-            own = shape_rows[k]
-            write_path(body, movers[row], reaches[own], path)
-            for rank in ranks:
-                if bounds[0, rank] <= path[2] and bounds[2, rank] >= path[0]:
-                    if bounds[1, rank] <= path[3] and bounds[3, rank] >= path[1]:
-                        other = order[rank]
-                        if may_collide(own, other, shapes, bodies, colliders, joined, category, mask, group):
+        write_path(bodies[row], movers[row], slowest[row].extent, path)
+        for block in range(len(boxes)):
+            if not overlap(path, boxes[block]):
+                continue
+            for place in range(BLOCK * block, min(BLOCK * block + BLOCK, len(ranks))):
+                rank = ranks[place]
+                if is_in_way(bounds, rank, path):
+                    for k in range(first_shapes[row], first_shapes[row + 1]):
+                        own, other = shape_rows[k], order[rank]
+                        write_path(bodies[row], movers[row], reaches[own], own_path)
+                        if is_in_way(bounds, rank, own_path) and may_collide(
+                            own, other, shapes, bodies, colliders, joined, category, mask, group
+                        ):  # fmt: skip
                             stop = stop_of(own, other, shapes, hulls, bodies, movers, until, scratch, until[row])
                             if stop.time < until[row]:
                                 until[row] = stop.time
@@ -133,12 +166,6 @@ def stop_at_kinematic(
                             until[row] = stop.time
                             carriers[row] = carrier
                             note(sunk, row, stop, own, other)
-
-
-@kernel
-def overlap(a, b):
-    """Whether two boxes (4,) do."""
-    return a[0] <= b[2] and a[2] >= b[0] and a[1] <= b[3] and a[3] >= b[1]
 
 
 @kernel

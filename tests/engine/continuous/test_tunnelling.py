@@ -116,6 +116,14 @@ def test_it_stops_where_it_touches_and_keeps_its_velocity() -> None:
     assert tuple(ball.velocity) == (1000.0, 120.0)
 
 
+def test_after_a_bounce_it_goes_its_whole_way_again() -> None:
+    world = World(gravity=(0, 0), precision="double")
+    world.create_body(Segment((5, -9), (5, 9)), kind="static")
+    ball = world.create_body(Circle(0.1), velocity=(900, 0), restitution=1.0)
+    places = [ball.position.x for _ in range(4) if world.step(DT) is None]
+    assert places == pytest.approx([4.9, 4.9, 4.9 - 15.0, 4.9 - 30.0], abs=0.006), "5 mm is what may be sunk in"
+
+
 @pytest.mark.parametrize("speed", [50.0, 1000.0])
 def test_a_bounce_keeps_the_speed(speed: float) -> None:
     world = World(gravity=(0, 0), precision="double")
@@ -199,3 +207,14 @@ def test_only_soft_step_and_only_where_it_is_asked_for() -> None:
         assert "continuous collision" not in {effect.name for effect in world.effects if effect.called_for}
         world.step(DT)
         assert ball.position.x > 10
+
+
+@pytest.mark.parametrize("spin", [600.0, -600.0])
+def test_a_rod_that_leaves_the_floor_while_it_spins_does_leave(spin: float) -> None:
+    # its tips come round faster than contacts can follow: they must not keep it on the spot
+    world = World()
+    floor(world)
+    rod = world.create_body(Box(0.8, 0.02), angle=0.1, velocity=(0, 100), angular_velocity=spin)
+    rod.position = (0, 0.4 * math.sin(0.1) + 0.01 * math.cos(0.1) - 0.003)
+    run(world, 40)
+    assert rod.position.y > 0.8 * 100 * 40 * DT

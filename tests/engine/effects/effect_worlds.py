@@ -66,8 +66,25 @@ def motored(world: World) -> None:
     )
 
 
+def shot_at(world: World) -> None:
+    """Bullets and others, fast and spinning, between walls that stand and one that moves."""
+    if world.solver != "soft_step":
+        return motored(world)
+    for x in (-2.0, 10.0):
+        world.create_body(Box(0.01, 30), position=(x, 5), kind="static", category=2)
+    world.create_body(Box(0.1, 30), position=(9, 5), kind="kinematic", velocity=(-3, 0), angular_velocity=0.5)
+    for k, y in enumerate((2.0, 5.0, 8.0)):
+        for j, shape in enumerate(SHAPES):
+            speed = 90.0 * (j - 1.5) * (k + 1)
+            world.create_body(
+                shape, position=(1.6 * j, y), velocity=(speed, 9.0 * k), angular_velocity=20.0 * k - 10.0 * j,
+                restitution=0.5, bullet=j % 2 == 0, group=-(k == 2),
+            )  # fmt: skip
+    return None
+
+
 WORLDS: dict[str, Callable[[World], None]] = {
-    build.__name__: build for build in (air, pool, attracted, blasted, motored)
+    build.__name__: build for build in (air, pool, attracted, blasted, motored, shot_at)
 }
 SOLVERS = ("soft_step", "sequential_impulses")
 
