@@ -58,12 +58,13 @@ def bias_factor(joint: RevoluteJoint) -> float:
 
 
 ON_REQUEST = frozenset({"diagnostics", "explosions"})  # no part of a step
+UNASKED = ON_REQUEST | {"sleeping"}  # nor does a copy sleep: what sleeps costs nothing, and there is nothing to compare
 
 
 def refuse_effects(world: World, known: Container[str]) -> None:
     """CannotMirror if the world calls for an effect that the engine is not known to have."""
     for effect in world.effects:
-        if effect.called_for and effect.name not in known and effect.name not in ON_REQUEST:
+        if effect.called_for and effect.name not in known and effect.name not in UNASKED:
             raise CannotMirror(f"it has no {effect.name}: {effect.because}")
 
 
