@@ -168,11 +168,14 @@ def cell(text: str) -> str:
 
 def source(effect: Effect) -> str:
     """Which properties bring it, or what else does."""
+    if effect.name in SETTINGS:
+        return SETTINGS[effect.name]
     body = [f"`{item.name}` of a body" for item in effect.body]
     shape = [f"`{item.name}` of a shape" for item in effect.shape]
     return ", ".join(body + shape) or CALLED_FOR_BY[effect.name]
 
 
+SETTINGS = {"sleeping": "`sleeping` of the world, where a body is dynamic"}  # what has properties, too
 CALLED_FOR_BY = {
     "gravity": "`gravity` of the world, unless it is zero",
     "wind": "`wind` of the world, where a body has drag",

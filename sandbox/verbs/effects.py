@@ -55,9 +55,12 @@ def write_page(file: Path, text: str) -> None:
         raise BadInput(f"--markdown {file}: cannot be written: {error.strerror}") from None
 
 
+FOREVER = 1e6  # [s]
+
+
 def examine(scene: Scene) -> Report:
-    """Runs the scene for a second, and measures its effects from there on."""
-    world = scene.make()
+    """Runs the scene for a second, and measures its effects from there on, while nothing falls asleep."""
+    world = scene.make(sleep_time=FOREVER)
     for _ in range(SETTLED):
         world.step(TIME_STEP)
     statuses, snapshot, idle = world.effects, world.snapshot(), everything_idle(world)

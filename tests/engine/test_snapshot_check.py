@@ -63,6 +63,23 @@ def exchange(table: str, value: np.ndarray) -> Callable[[Tables], None]:
     return lambda tables: tables.update({table: value})
 
 
+def sleeping(*rows: int, still: bool = True, mark: int = 1) -> Callable[[Tables], None]:
+    """Puts these bodies to sleep, without or with the speed that they have."""
+
+    def change(tables: Tables) -> None:
+        tables["bodies.asleep"] = np.zeros(len(tables["bodies.bodies"]), np.uint8)
+        tables["bodies.asleep"][list(rows)] = mark
+        for name in ("vx", "vy", "w") if still else ():
+            tables["bodies.motions"][name][list(rows)] = 0.0
+
+    return change
+
+
+def sleeping_under_a_force(tables: Tables) -> None:
+    sleeping(5)(tables)
+    tables["bodies.bodies"]["force_x"][5] = 1.0
+
+
 # rows of shapes: 0 box, 1 that of the destroyed box, 2 box, 3 circle, 4 and 5 chain, 6 segment, 7 polygon, 8 capsule
 FAULTS = {
     "a joint of a body that is not there": put("joints.joints", "body1", 0, 100_000_000),
@@ -148,6 +165,13 @@ FAULTS = {
     "a touch of a shape with itself": put("touching", "shape2", 0, 0),
     "touches without fields": exchange("touching", np.zeros(3)),
     "a property out of range": put_in("bodies.linear_damping", 5, -1.0),
+    "asleep and moving": sleeping(5, still=False),
+    "asleep under a force": sleeping_under_a_force,
+    "asleep without weight": sleeping(0),
+    "asleep in a row of nobody's": sleeping(1),
+    "half asleep": sleeping(5, mark=2),
+    "asleep on what is awake": sleeping(3),
+    "still for less than no time": put("bodies.motions", "still", 2, -1.0),
 }
 
 
@@ -172,6 +196,18 @@ def test_a_fault_is_what_is_refused() -> None:
     assert good.tables["shapes.shapes"]["serial"].tolist() == [0, -1, 2, 3, 4, 5, 6, 7, 8]
     assert len(good.tables["arbiters"]) == 2
     World().restore(good)
+
+
+def test_who_sleeps_is_taken_if_the_settings_let_it() -> None:
+    good = busy_world().snapshot()
+    tables = {name: table.copy() for name, table in good.tables.items()}
+    sleeping(2, 3, 5)(tables)
+    world = World()
+    world.restore(replace(good, tables=tables))
+    assert np.flatnonzero(world.asleep).tolist() == [1, 2, 4], "without the body that was destroyed"
+    for change in ({"sleeping": False}, {"solver": "sequential_impulses"}):
+        with pytest.raises(ValueError, match=r"bodies\.asleep must be of bodies that are awake, with these settings"):
+            world.restore(replace(good, tables=tables, settings=good.settings.changed(change)))
 
 
 def test_columns_in_range_are_taken() -> None:

@@ -141,10 +141,22 @@ def frictionless(world: World) -> None:
     world.create_body(Circle(0.3), position=(0.2, 0.9), velocity=(0, -2), friction=0)
 
 
+def sleepers(world: World) -> None:
+    """Three stacks that soon sleep, one of them joined; a ball hits the first, a plate goes to the second."""
+    world.sleep_time = 0.1
+    floor(world)
+    for x in (0, 4, 8):
+        one, other = (world.create_body(Box(1, 1), position=(x, 0.5 + k), friction=0.6) for k in range(2))
+    world.create_joint_revolute(one, other, anchor=(8, 1))
+    world.create_body(Circle(0.4), position=(-2.6, 1.2), velocity=(8, 0), friction=0.4)
+    world.create_body(Box(1, 0.3), position=(6.3, 1.5), kind="kinematic", velocity=(-6, 0))
+
+
 WORLDS: dict[str, Callable[[World], None]] = {
     build.__name__: build
     for build in (
         boxes, circles, mixed, joined, changing, outlines, compounds, driven, filtered, lively, frictionless,
+        sleepers,
     )
 }  # fmt: skip
 SOFT_ONLY = ("lively",)

@@ -34,6 +34,7 @@ SPEED = 6.0  # [m/s]
         at_most=lambda world, dt: 1.1 * damping_error(max(RATES), dt / world.settings.substeps, AFTER),
     ),
     gravity=(0.0, 0.0),
+    sleeping=False,  # what is slow is looked at, too
     view=(2.0, 0.0, 16.0),
 )
 def linear_damping(world: World) -> None:
@@ -58,6 +59,7 @@ SPIN = 8.0  # [rad/s]
         at_most=lambda world, dt: 1.1 * damping_error(max(RATES), dt / world.settings.substeps, AFTER),
     ),
     gravity=(0.0, 0.0),
+    sleeping=False,  # what is slow is looked at, too
     view=(0.0, 0.0, 8.0),
 )
 def angular_damping(world: World) -> None:

@@ -11,7 +11,7 @@ import pytest
 
 from engine import Box, Capsule, Chain, Circle, Polygon, Segment, World
 from sandbox.lab.peers import CannotMirror, Pyb2d3, Pymunk, pyb2d3_peer, pymunk_peer
-from sandbox.lab.peers.protocol import ON_REQUEST
+from sandbox.lab.peers.protocol import UNASKED
 from sandbox.scenes import SCENES, find_scene
 
 DT = 1 / 60
@@ -48,7 +48,7 @@ def after(name: str, world: World, steps: int) -> tuple[np.ndarray, np.ndarray]:
 @pytest.mark.parametrize("scene", SCENES)
 def test_every_scene_is_copied_or_names_what_is_lacking(name: str, scene: str) -> None:
     world = SCENES[scene].make()
-    known = KNOWN[name] | ON_REQUEST
+    known = KNOWN[name] | UNASKED
     lacking = [effect.name for effect in world.effects if effect.called_for and effect.name not in known]
     try:
         copy = mirrored(name, world)
