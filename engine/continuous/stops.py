@@ -143,8 +143,8 @@ def write_paths(ranks, order, bounds, reaches, shapes, movers, paths):
 
 @kernel
 def stop_at_kinematic(
-    fast, first_shapes, shape_rows, reaches, kinematic, order, bounds, paths, shapes, hulls, bodies, movers, colliders, joined, category,
-    mask, group, until, sunk, carriers, scratch,
+    fast, first_shapes, shape_rows, reaches, kinematic, order, bounds, paths, shapes, hulls, bodies, movers, colliders,
+    joined, category, mask, group, until, sunk, carriers, scratch,
 ):  # fmt: skip
     """Stops fast bodies at kinematic ones, whose shapes' ranks are given, and notes by which they are carried on.
 

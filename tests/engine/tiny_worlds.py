@@ -19,6 +19,7 @@ import numpy as np
 
 from engine import SOLVERS, Box, Capsule, Chain, Circle, Polygon, Segment, World
 from engine.trigonometry import cos_sin
+from tests.engine.joints.making import MAKERS, PARTS
 from tests.engine.worlds import DT, POINTS, PRECISIONS, floor, tables_of
 
 STEPS = 20
@@ -152,14 +153,27 @@ def sleepers(world: World) -> None:
     world.create_body(Box(1, 0.3), position=(6.3, 1.5), kind="kinematic", velocity=(-6, 0))
 
 
+def jointed(world: World) -> None:
+    """Joints of every kind with all their parts, two of them under a mass that calls for them to be solved at once."""
+    for k, kind in enumerate(MAKERS):
+        a = world.create_body(Box(0.4, 0.3), position=(1.3 * k - 4, 2.2), angle=0.1 * k, velocity=(0, -1))
+        b = world.create_body(Box(0.3, 0.5), position=(1.3 * k - 3.5, 2.0), angle=-0.2 * k, fixed_rotation=k == 3)
+        MAKERS[kind](world, a, b, **PARTS[kind])
+    top = world.create_body(kind="static", position=(0, 5))
+    a = world.create_body(Box(0.1, 0.6), position=(0, 4.7))
+    b = world.create_body(Box(0.8, 0.8), position=(0, 4.0), mass=300)
+    world.create_joint_weld(top, a, anchor=(0, 5))
+    world.create_joint_prismatic(a, b, anchor=(0, 4.4), axis=(1, 0.2), lower=-0.1, upper=0.1, collide_connected=False)
+
+
 WORLDS: dict[str, Callable[[World], None]] = {
     build.__name__: build
     for build in (
         boxes, circles, mixed, joined, changing, outlines, compounds, driven, filtered, lively, frictionless,
-        sleepers,
+        sleepers, jointed,
     )
 }  # fmt: skip
-SOFT_ONLY = ("lively",)
+SOFT_ONLY = ("lively", "jointed")
 SETTINGS: dict[str, dict[str, Any]] = {  # of some of them, with soft_step
     "boxes": {"substeps": 3, "iterations": 2},
     "circles": {"stiffness": "fixed", "substeps": 8},

@@ -57,13 +57,13 @@ def bias_factor(joint: RevoluteJoint) -> float:
 
 
 ON_REQUEST = frozenset({"diagnostics", "events", "explosions"})  # move nothing in a step
-OUR_WAY = frozenset({"chains", "continuous collision", "sleeping"})  # how we solve what others solve their way
+UNASKED = ON_REQUEST | {"chains", "continuous collision", "sleeping"}  # others do it their way, or go without
 
 
 def refuse_effects(world: World, known: frozenset[str]) -> None:
     """CannotMirror if the world calls for an effect that the engine is not known to have."""
     for effect in world.effects:
-        if effect.called_for and effect.name not in known | ON_REQUEST | OUR_WAY:
+        if effect.called_for and effect.name not in known | UNASKED:
             raise CannotMirror(f"it has no {effect.name}: {effect.because}")
 
 

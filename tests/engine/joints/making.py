@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from itertools import pairwise
 from typing import Any, NamedTuple
 
 from engine import EFFECTS, Body, Box, Circle, World
 from engine.joints import Joint
-from tests.engine.worlds import DT
+from tests.engine.worlds import DT, floor
 
 FORCED = frozenset(effect.name for effect in EFFECTS if "joint" in effect.name) - {"breaking joints"}
 FORCED |= {"gravity", "friction"}
@@ -57,6 +58,19 @@ MAKERS: dict[str, Callable[..., Joint]] = {
 """Every kind of joint between two bodies, in places that are nothing special."""
 
 HOLDING = tuple(kind for kind in MAKERS if kind != "filter")
+
+
+PARTS: dict[str, dict] = {
+    "revolute": {"motor_speed": 2.0, "max_motor_torque": 3.0, "lower": -0.4, "upper": 0.5, "hertz": 2.0},
+    "distance": {"motor_speed": 0.5, "max_motor_force": 3.0, "lower": 1.0, "upper": 1.6, "hertz": 2.0},
+    "prismatic": {"motor_speed": 0.5, "max_motor_force": 3.0, "lower": -0.2, "upper": 0.3, "hertz": 2.0},
+    "weld": {"linear_hertz": 3.0, "angular_hertz": 2.0},
+    "wheel": {"motor_speed": 3.0, "max_motor_torque": 3.0, "lower": -0.2, "upper": 0.3},
+    "motor": {"linear_hertz": 2.0, "angular_hertz": 1.0},
+    "mouse": {"max_force": 8.0},
+    "filter": {},
+}
+"""Everything that may act in them."""
 
 
 def middle(a: Body, b: Body) -> tuple[float, float]:
@@ -161,3 +175,21 @@ def joint_omega(world: World, dt: float = DT) -> float:
 def spinning_disc(world: World, position: tuple[float, float] = (0.0, 0.0), **more: Any) -> Body:
     """A disc of 2 kg."""
     return world.create_body(Circle(0.5), position=position, mass=2, **more)
+
+
+def fair(world: World, full: bool = True) -> None:
+    """One of every kind, hanging from above a floor, a chain of some, and bodies that fall among them."""
+    floor(world)
+    top = world.create_body(kind="static", position=(0, 3))
+    for k, kind in enumerate(MAKERS):
+        a = world.create_body(Box(0.4, 0.3), position=(1.3 * k - 4, 2.2), angle=0.1 * k, mass=1 + 0.3 * k)
+        b = world.create_body(Box(0.3, 0.5), position=(1.3 * k - 3.5, 2.0), angle=-0.2 * k, fixed_rotation=k == 3)
+        world.create_joint_revolute(top, a, anchor=(1.3 * k - 4, 2.6))
+        MAKERS[kind](world, a, b, **(PARTS[kind] if full else {}))
+    plate = world.create_body(Box(1, 0.2), position=(7.5, 1), kind="kinematic", velocity=(0.1, 0), angular_velocity=0.3)
+    rider = world.create_body(Box(0.3, 0.3), position=(7.9, 1.4))
+    world.create_joint_prismatic(plate, rider, anchor=(7.9, 1.4), axis=(1, 0), hertz=1.0)
+    links = [world.create_body(Box(0.3, 0.1), position=(0.3 * k - 6, 4)) for k in range(5)]
+    for k, (a, b) in enumerate(pairwise(links)):
+        world.create_joint_revolute(a, b, anchor=(0.3 * k - 5.85, 4), collide_connected=False)
+    world.create_joint_weld(top, links[0], anchor=(-6, 4))

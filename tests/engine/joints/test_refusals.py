@@ -98,10 +98,10 @@ def test_bodies_are_refused(kind: str) -> None:
     gone.destroy()
     static, kinematic = (world.create_body(Box(1, 1), kind=which) for which in ("static", "kinematic"))
     more = {
-        "revolute": {"anchor": (0, 0)}, "distance": {"anchor1": (0, 0), "anchor2": (1, 0)},
-        "prismatic": {"anchor": (0, 0)}, "weld": {"anchor": (0, 0)}, "wheel": {"anchor": (0, 0)},
-        "mouse": {"target": (0, 0), "anchor": (0, 0)},
-    }.get(kind, {})  # fmt: skip
+        "distance": {"anchor1": (0, 0), "anchor2": (1, 0)}, "prismatic": {"anchor": (0, 0), "axis": (1, 0)},
+        "wheel": {"anchor": (0, 0), "axis": (1, 0)}, "mouse": {"target": (0, 0)}, "motor": {}, "filter": {},
+    }.get(kind, {"anchor": (0, 0)})  # fmt: skip
+    make = getattr(world, f"create_joint_{kind}")
     cases = [
         (a, a, "body2 = .*another body than body1"), (a, other, "body2 = .*of this world, not of another"),
         (other, b, "body1 = .*of this world, not of another"), (gone, b, "body1 = .*this one was destroyed"),
@@ -109,7 +109,7 @@ def test_bodies_are_refused(kind: str) -> None:
         (static, kinematic, "body2 = .*dynamic where body1 is static"), (kinematic, static, "body2 = .*kinematic"),
     ]  # fmt: skip
     for first, second, message in cases:
-        unchanged(world, lambda first=first, second=second: MAKERS[kind](world, first, second, **more), message)
+        unchanged(world, lambda first=first, second=second: make(first, second, **more), message)
 
 
 @pytest.mark.parametrize("kind", ["revolute", "distance", "prismatic", "wheel"])

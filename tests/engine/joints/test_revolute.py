@@ -97,7 +97,7 @@ def test_after_a_soft_step_both_anchors_move_as_one() -> None:
     joint = world.create_joint_revolute(a, b, anchor=(1, 0.2), collide_connected=False)
     momentum = world.diagnostics().momentum
     world.step(DT)
-    ends = [tuple(body.velocity_at(joint.anchors[1])) for body in (a, b)]
+    ends = [tuple(body.velocity_at(end)) for body, end in zip((a, b), joint.anchors, strict=True)]
     assert ends[0] == pytest.approx(ends[1], abs=1e-4)  # how far the angles within a step lag behind: angle^3 / 12
     assert tuple(world.diagnostics().momentum) == pytest.approx(tuple(momentum), rel=1e-14)
 

@@ -3,7 +3,7 @@
 All rigid rows of an island of joints are one linear system, K P = -(J v + bias): block sparse, symmetric, positive
 definite, with one block of up to three rows a joint. It is factored once a substep, K = L D L^T, and solved in each
 pass: exact whatever the masses, where visiting joints one by one moves an impulse by one link a visit. In an order in
-which chains and trees fill in nothing (plan.py) that takes a time that grows with the number of joints, as in
+which chains fill in nothing, and trees little (plan.py), that takes a time that grows with the number of joints, as in
 D. Baraff, "Linear-Time Dynamics using Lagrange Multipliers" (SIGGRAPH 1996), by another road: the system of joints
 alone, in the order of least degree, so that loops are taken, too.
 
