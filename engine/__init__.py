@@ -6,6 +6,7 @@ from engine.diagnostics import Diagnostics
 from engine.effects import EFFECTS, EffectStatus
 from engine.effects.fluid import Fluid
 from engine.errors import StepError
+from engine.events import BODY_EVENT, BROKEN_EVENT, HIT_EVENT, MOVED_EVENT, TOUCH_EVENT, Events
 from engine.joints import (
     DistanceJoint,
     FilterJoint,
@@ -29,16 +30,21 @@ from engine.vec2 import Vec2
 from engine.world import World
 
 __all__ = [
+    "BODY_EVENT",
     "BODY_KINDS",
     "BROAD_PHASES",
+    "BROKEN_EVENT",
     "CONTACT_RECORD",
     "EFFECTS",
+    "HIT_EVENT",
     "JOINT_KINDS",
     "JOINT_RECORD",
+    "MOVED_EVENT",
     "SHAPES",
     "SHAPE_KINDS",
     "SOLVERS",
     "STAGES",
+    "TOUCH_EVENT",
     "Arbiter",
     "Body",
     "Box",
@@ -49,6 +55,7 @@ __all__ = [
     "Diagnostics",
     "DistanceJoint",
     "EffectStatus",
+    "Events",
     "FilterJoint",
     "Fluid",
     "Joint",

@@ -64,10 +64,21 @@ def begin_arbiter(arbiter, row1, row2, shapes, colliders, rule):
 
 
 @kernel
+def part(arbiter, motions):
+    """What touched does so no more: what lay on something may fall now."""
+    if arbiter.count > 0:
+        motions[arbiter.body1].still = 0
+        motions[arbiter.body2].still = 0
+
+
+@kernel
 def follow_pairs(
-    pairs, count, serials, shapes, colliders, rule, old_arbiters, old_contacts, old_total, arbiters, contacts, kinds
+    pairs, count, serials, shapes, colliders, rule, old_arbiters, old_contacts, old_total, arbiters, contacts, kinds,
+    motions,
 ):  # fmt: skip
     """Writes one arbiter for each pair of shape rows that may touch; those that were there keep all that they have.
+
+    Bodies that touched and are no pair any more have not been still so far.
 
     Pairs and arbiters are in ascending order of serials, so one walk along both finds all matches. serials (shapes,)
     int64 and kinds (capacity,) int32, the collider of each arbiter, are what is looked at most, each closely packed.
@@ -82,16 +93,21 @@ def follow_pairs(
             old_arbiters[k].serial1 < serial1
             or (old_arbiters[k].serial1 == serial1 and old_arbiters[k].serial2 < serial2)
         ):
+            part(old_arbiters[k], motions)
             k += 1
         if k < old_total and old_arbiters[k].serial1 == serial1 and old_arbiters[k].serial2 == serial2:
             arbiters[total] = old_arbiters[k]
             if arbiters[total].count > 0:  # what does not touch has no contacts to keep
                 contacts[total, 0] = old_contacts[k, 0]
                 contacts[total, 1] = old_contacts[k, 1]
+            k += 1
         elif not begin_arbiter(arbiters[total], pairs[index, 0], pairs[index, 1], shapes, colliders, rule):
             continue
         kinds[total] = arbiters[total].collider
         total += 1
+    while k < old_total:
+        part(old_arbiters[k], motions)
+        k += 1
     return total
 
 

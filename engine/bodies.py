@@ -15,6 +15,7 @@ from engine.properties import Part
 from engine.queries import rows_at
 from engine.shape_handle import ShapeHandle
 from engine.shapes import Shape
+from engine.sleeping import asleep_of, hush, touch, touch_weights
 from engine.tables import BODY_KINDS, STATIC
 from engine.vec2 import Vec2, cross
 from engine.weights import reweigh
@@ -42,7 +43,9 @@ class Body(Part):
         gravity_scale: float
         drag: float
         magnet: float
+        can_sleep: bool
         attraction: float
+        bullet: bool
 
     def __init__(self, world: World, row: int, serial: int) -> None:
         self.world = world
@@ -146,6 +149,7 @@ class Body(Part):
     @fixed_rotation.setter
     def fixed_rotation(self, value: bool) -> None:
         fixed = validate.switch("fixed_rotation", value)
+        self._touch()
         self._body["fixed_rotation"] = fixed
         if fixed and self.kind == "dynamic":
             self._motion["w"] = 0.0
@@ -198,6 +202,7 @@ class Body(Part):
         x, y = validate.vector("velocity", value)
         validate.in_range(self.world.precision, velocity=(x, y))
         motion = self._movable("velocity", value)
+        self._touch()
         motion["vx"], motion["vy"] = x, y
 
     @property
@@ -212,6 +217,7 @@ class Body(Part):
         motion = self._movable("angular_velocity", value)
         if w != 0.0 and self.fixed_rotation and self.kind == "dynamic":
             raise validate.refuse("angular_velocity", value, "zero: the body's rotation is fixed")
+        self._touch()
         motion["w"] = w
 
     @property
@@ -224,6 +230,7 @@ class Body(Part):
         force = validate.vector("force", value)
         validate.in_range(self.world.precision, force=force)
         body = self._body
+        self._touch()
         body["force_x"], body["force_y"] = force
 
     @property
@@ -235,7 +242,32 @@ class Body(Part):
     def torque(self, value: float) -> None:
         torque = validate.number("torque", value)
         validate.in_range(self.world.precision, torque=(torque,))
-        self._body["torque"] = torque
+        body = self._body
+        self._touch()
+        body["torque"] = torque
+
+    @property
+    def awake(self) -> bool:
+        """Whether it is not asleep: steps move it. True wakes its island, which has then not been still so far.
+
+        False stops its island: velocities become zero, and it falls asleep in the next step, unless something in it may
+        not. ValueError where there is nothing that may sleep.
+        """
+        self._check()
+        asleep = asleep_of(self.world._state)
+        return asleep is None or not asleep[self._row]
+
+    @awake.setter
+    def awake(self, value: bool) -> None:
+        if validate.switch("awake", value):
+            self._check()
+            self._touch()
+        elif self.kind != "dynamic" or not self.inverse_mass:
+            raise validate.refuse("awake", value, "True: only a dynamic body that weighs something sleeps")
+        elif not self.world.may_sleep:
+            raise validate.refuse("awake", value, "True where sleeping is off, or the solver knows none")
+        else:
+            hush(self.world._state, self._row)
 
     def contains(self, point: Pair) -> bool:
         """Whether a point of the world [m] lies in the body."""
@@ -255,6 +287,7 @@ class Body(Part):
         body = self._body
         total = (body["force_x"] + fx, body["force_y"] + fy, body["torque"] + cross(arm, Vec2(fx, fy)))
         validate.in_range(self.world.precision, force=total)
+        self._touch()
         body["force_x"], body["force_y"], body["torque"] = total
 
     def apply_impulse(self, impulse: Pair, point: Pair | None = None) -> None:
@@ -270,6 +303,7 @@ class Body(Part):
             self.angular_velocity + self.inverse_inertia * cross(arm, Vec2(px, py)),
         )
         validate.in_range(self.world.precision, impulse=changed)
+        self._touch()
         motion = self._motion
         motion["vx"], motion["vy"], motion["w"] = changed
 
@@ -308,6 +342,14 @@ class Body(Part):
         self._check()
         return self.world._state.bodies.tables["motions"][self._row]
 
+    def _touch(self) -> None:
+        """Something is done to it: see engine/sleeping.py."""
+        touch(self.world._state, self._row)
+
+    def _touch_property(self) -> None:
+        """A property of its own is set: what lies on it does not feel that."""
+        touch_weights(self.world._state, np.array([self._row]))
+
     def _movable(self, name: str, value: Any) -> Any:
         if int(self._body["kind"]) == STATIC:
             raise validate.refuse(name, value, "left alone: the body is static")
@@ -315,5 +357,6 @@ class Body(Part):
 
     def _place(self) -> None:
         """Takes sine, cosine and centre of mass afresh after the pose was set."""
+        self._touch()
         tables = self.world._state.bodies.tables
         place_rows(tables["bodies"], tables["motions"], np.array([self._row]))

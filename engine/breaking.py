@@ -6,7 +6,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from engine.islands import COARSE
 from engine.records import joint_records
+from engine.sleeping import touch_weights
 
 if TYPE_CHECKING:
     from engine.settings import Settings
@@ -24,6 +26,10 @@ def break_joints(state: State, settings: Settings) -> None:
     torques = np.abs(records["turn_impulse"]) * inverse_dt
     most_force, most_torque = joints["break_force"][breakable], joints["break_torque"][breakable]
     broken = ((most_force >= 0.0) & (forces > most_force)) | ((most_torque >= 0.0) & (torques > most_torque))
-    for row in breakable[broken]:
-        state.joints.remove(int(row))
+    for place in np.flatnonzero(broken):
+        record = records[place]
+        state.happened.note_broken(record["joint"], record["body1"], record["body2"], forces[place], torques[place])
+        touch_weights(state, np.array([joints["body1"][breakable[place]], joints["body2"][breakable[place]]]))
+        state.joints.remove(int(breakable[place]))
         state.stale = True
+        state.islands.flags[COARSE] = 1  # the island may be two by now

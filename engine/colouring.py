@@ -26,11 +26,21 @@ NONE = -1
 
 
 @kernel
-def any_change(arbiters, count):
-    """Whether something began or ceased to touch since colours were given."""
+def any_change(arbiters, count, indices):
+    """Whether something began or ceased to touch since colours were given. indices: not looked at, see below."""
     changed = 0
     for k in range(count):
         changed += (arbiters[k].count > 0) != (arbiters[k].colour >= 0)
+    return changed > 0
+
+
+@kernel
+def any_change_among(arbiters, count, indices):
+    """The same for the arbiters at these indices (K,) int64."""
+    changed = count * 0  # a literal would be a type of its own
+    for k in range(len(indices)):
+        arbiter = arbiters[indices[k]]
+        changed += (arbiter.count > 0) != (arbiter.colour >= 0)
     return changed > 0
 
 
@@ -51,14 +61,15 @@ def colours_at(body, motions, taken):
 
 
 @kernel
-def give_colours(arbiters, count, motions, taken):
-    """Brings the colours up to date with what touches. taken: (N,) int64 of scratch, one a body.
+def give_colours(arbiters, indices, motions, taken):
+    """Brings the colours of the arbiters at these indices (K,) int64, ascending, up to date with what touches. They are
+    all that the bodies concerned have. taken: (N,) int64 of scratch, one a body.
 
     A colour that is none, or is another's already because a body has begun to move, is given anew.
     """
     taken[:] = 0
-    for k in range(count):
-        arbiter = arbiters[k]
+    for k in range(len(indices)):
+        arbiter = arbiters[indices[k]]
         others = colours_at(arbiter.body1, motions, taken) | colours_at(arbiter.body2, motions, taken)
         colour = arbiter.colour
         if arbiter.count == 0 or colour < 0 or colour > OVERFLOW or (others >> colour) & 1 != 0:
@@ -66,8 +77,8 @@ def give_colours(arbiters, count, motions, taken):
         elif colour < OVERFLOW:
             taken[arbiter.body1] |= np.int64(1) << colour
             taken[arbiter.body2] |= np.int64(1) << colour
-    for k in range(count):
-        arbiter = arbiters[k]
+    for k in range(len(indices)):
+        arbiter = arbiters[indices[k]]
         if arbiter.count > 0 and arbiter.colour < 0:
             arbiter.colour = take_lowest(arbiter.body1, arbiter.body2, motions, taken)
 

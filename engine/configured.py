@@ -49,12 +49,19 @@ class Configured:
     speculative_distance = Setting[float]()
     recycling = Setting[bool]()
     recycling_distance = Setting[float]()
+    continuous = Setting[bool]()
+    maximum_speed = Setting[float]()
+    sleeping = Setting[bool]()
+    sleep_speed = Setting[float]()
+    sleep_time = Setting[float]()
     friction_mixing = Setting[str]()
     restitution_mixing = Setting[str]()
     wind = Setting[tuple[float, float]]()
     accumulate_impulses = Setting[bool]()
     warm_starting = Setting[bool]()
     position_correction = Setting[bool]()
+    tell_events = Setting[bool]()
+    hit_speed = Setting[float]()
 
     @property
     def settings(self) -> Settings:

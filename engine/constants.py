@@ -61,6 +61,10 @@ RECYCLING_ROLL = 5e-4
 """Nor is it kept when a round shape has turned so far that the point that touched is this much off the outline [m]: a
 tenth of a usual overlap. Larger: balls that roll bob up and down, by 4 cm at a radius of 2 m without this limit."""
 
+MAXIMUM_SPEED = 4000.0
+"""Fastest that anything makes a body [m/s]: ten times the speed of sound. Lower: a bullet stops short of its speed;
+without: what blows up is a number that is not finite a step later."""
+
 MAX_SUBSTEPS = 1000
 """Most substeps that may be asked for."""
 
@@ -74,6 +78,33 @@ half width. Without: two equally good faces alternate from step to step and thei
 COINCIDENT = 1e-15
 """Centres of circles closer than this are one point [m]: the normal is straight up. Zero: in single precision the
 square of a distance below 1e-19 m loses its digits, and the normal its unit length."""
+
+# --- events ---------------------------------------------------------------------------------------------------------
+
+PARTING_DISTANCE = 0.005
+"""Shapes that touched do so until they are this far apart [m], or until nothing presses if that is later: a contact
+that was seen ahead may. Zero: pairs in a heap begin and end all the time. Larger: more low bounces are told as one
+touch; here those below sqrt(2 g 0.005 m), 0.3 m/s, are."""
+
+# --- continuous collision -------------------------------------------------------------------------------------------
+
+CONTINUOUS_WAY = 0.5
+"""Part of the half width of its thinnest shape that a body may go in a step before it counts as fast. Near 1: what ends
+in the middle of a wall comes out on either side; 0: all bodies that move are looked at."""
+
+CONTINUOUS_DEPTH = 0.005
+CONTINUOUS_SHARE = 0.25
+"""What is fast stops where it would overlap by more than this [m], or by more than this part of the thinner half width.
+Smaller: bodies that slide stop at the seams of a floor, into which they sink a little; larger: corners go through what
+is thin."""
+
+CONTINUOUS_FAR = 10.0
+CONTINUOUS_AHEAD = 1e-3
+"""What goes further in a step than so many speculative distances keeps no contact that is further ahead than this [m].
+Far larger: bullets are turned away by corners that they miss; 0: what slides fast loses the floor now and then."""
+
+CONTINUOUS_NEAR = 0.02
+"""Part of that depth by which an impact may be found too early. Zero: what turns takes many advances."""
 
 # --- broad phase --------------------------------------------------------------------------------------------------
 
@@ -103,6 +134,17 @@ FRICTION = 0.2
 RESTITUTION_THRESHOLD = 1.0
 """Shapes that meet slower than this do not bounce [m/s]. Zero: resting bodies tremble for ever; larger: a ball stops
 while one still sees it move."""
+
+HIT_SPEED = 1.0
+"""Shapes that begin to touch faster than this hit each other [m/s]. Box2D v3's value: below it nobody hears them."""
+
+SLEEP_SPEED = 0.05
+"""Slower than this, as the root mean square of all its mass, a body is still [m/s]: Box2D's figure. Larger: what creeps
+or tips slowly is stopped; smaller: heaps that tremble never sleep."""
+
+SLEEP_TIME = 0.5
+"""So long must all of an island be still before it falls asleep [s]: Box2D's figure. Smaller: what turns back, such as
+a ball at its highest, is stopped."""
 
 MAX_ITERATIONS = 10_000
 """Most passes that may be asked for: a step that lasts minutes is a typing error."""

@@ -14,6 +14,7 @@ from engine.integrate import place_rows
 from engine.properties import check
 from engine.shape_handle import ShapeHandle
 from engine.shapes import Shape
+from engine.sleeping import asleep_of, touch
 from engine.tables import BODY_KINDS, DYNAMIC
 from engine.trigonometry import cos_sin
 from engine.vec2 import Vec2
@@ -75,6 +76,8 @@ def add_bodies(
     shape_rows = np.empty(0, np.int64) if blueprint is None else blueprint.write(state, rows)
     weigh(state, rows, shape_rows)
     place_rows(bodies, motions, rows)
+    if asleep_of(state) is not None:
+        state.bodies.put("disturbed", rows, 1)
     return [Body(world, int(row), int(serial)) for row, serial in zip(rows, bodies["serial"][rows], strict=True)]
 
 
@@ -93,6 +96,7 @@ def add_shape(
     blueprint = Blueprint(world, shape, mass, density, friction, offset, angle, properties)
     state = world._state
     check_more_weight(state, body._row, blueprint, world.precision)
+    touch(state, body._row)
     rows = blueprint.write(state, np.array([body._row]))
     reweigh(state, body._row)
     return ShapeHandle(world, rows, int(state.shapes.tables["shapes"]["serial"][rows[0]]))

@@ -31,6 +31,7 @@ class Attribute:
     def __set__(self, part: Any, value: Any) -> None:
         part._check()
         checked = check(part.world, {self.item.name: value}, part.properties)
+        part._touch_property()
         part._storage.put(self.item.name, part._places, checked[self.item.name])
         part.world._content_changed()
 
@@ -55,6 +56,9 @@ class Part:
 
     @property
     def _storage(self) -> Storage:
+        raise NotImplementedError
+
+    def _touch_property(self) -> None:
         raise NotImplementedError
 
     def _check(self) -> None:

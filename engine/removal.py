@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from engine.sleeping import touch
 from engine.weights import reweigh
 
 if TYPE_CHECKING:
@@ -28,12 +29,14 @@ def remove_shapes(state: State, rows: np.ndarray) -> None:
 def destroy_shape(state: State, handle: ShapeHandle) -> None:
     """A shape; its body's mass, centre and inertia follow."""
     row = handle.body._row
+    touch(state, row, going=True)
     remove_shapes(state, handle.rows)
     reweigh(state, row)
 
 
 def destroy_body(state: State, body: Body) -> None:
     """A body with its shapes, contacts and joints."""
+    touch(state, body._row, going=True)
     joints = state.joints.tables["joints"]
     for row in state.joints.order:
         if body._row in (joints["body1"][row], joints["body2"][row]):

@@ -58,8 +58,8 @@ def choice(default: str, choices: Any, hint: str, solvers: Any = ()) -> Any:
     return field(default=default, metadata={"kind": "choice", **about})
 
 
-def switch(hint: str, solvers: Any = ()) -> Any:
-    return field(default=True, metadata={"kind": "switch", "hint": hint, "solvers": solvers})
+def switch(hint: str, solvers: Any = (), default: bool = True) -> Any:
+    return field(default=default, metadata={"kind": "switch", "hint": hint, "solvers": solvers})
 
 
 def whole(most: int, hint: str, solvers: Any = ()) -> Any:
@@ -111,12 +111,23 @@ class Settings:
     recycling_distance: float = number(
         constants.RECYCLING_DISTANCE, 0.0, 0.2, 0.005, "m", "how far bodies move before contacts are found anew", SOFT
     )
+    continuous: bool = switch("what is fast stops where it would go through something", SOFT)
+    maximum_speed: float = number(
+        constants.MAXIMUM_SPEED, 100.0, 10000.0, 100.0, "m/s", "of a body: what would be faster is held to it", SOFT
+    )
+    sleeping: bool = switch("what lies still falls asleep and costs nothing until something wakes it", SOFT)
+    sleep_speed: float = number(constants.SLEEP_SPEED, 0.0, 1.0, 0.01, "m/s", "below it a body is still", SOFT)
+    sleep_time: float = number(constants.SLEEP_TIME, 0.1, 10.0, 0.1, "s", "so long must a body be still to sleep", SOFT)
     friction_mixing: str = choice("geometric", mixing.RULES, "the friction of two shapes that touch")
     restitution_mixing: str = choice("greatest", mixing.RULES, "the restitution of two shapes that touch", SOFT)
     wind: tuple[float, float] = vector((0.0, 0.0), 30.0, "m/s", "of the air; moves bodies that have drag")
     accumulate_impulses: bool = switch("clamp the sum of a contact's impulses, not each alone", TALK)
     warm_starting: bool = switch("start from the impulses of the step before")
     position_correction: bool = switch("push bodies apart that have sunk into each other")
+    tell_events: bool = switch("tell what begins, ends, hits and moves in each step", default=False)
+    hit_speed: float = number(
+        constants.HIT_SPEED, 0.0, 20.0, 0.1, "m/s", "shapes that begin to touch faster hit each other"
+    )
 
     def __post_init__(self) -> None:
         solver = SOLVERS[validate.choice("solver", self.solver, SOLVERS)]

@@ -10,6 +10,7 @@ from engine import validate
 from engine.effects import SHAPE_PROPERTIES
 from engine.properties import Part
 from engine.shapes import SHAPES, Shape
+from engine.sleeping import touch
 
 if TYPE_CHECKING:
     from engine.bodies import Body
@@ -76,7 +77,7 @@ class ShapeHandle(Part):
     def friction(self, value: float) -> None:
         friction = validate.non_negative("friction", value)
         validate.in_range(self.world.precision, friction=(friction,))
-        self._check()
+        self._touch_property()
         self.world._state.shapes.tables["shapes"]["friction"][self.rows] = friction
         self.world._state.stale = True
 
@@ -84,6 +85,9 @@ class ShapeHandle(Part):
         """Takes the shape off its body, whose mass, centre and inertia follow."""
         self._check()
         self.world._destroy_shape(self)
+
+    def _touch_property(self) -> None:
+        touch(self.world._state, int(self._rows[0]["body"]))
 
     @property
     def _storage(self) -> Any:

@@ -69,7 +69,8 @@ def state_hash(state: State) -> str:
     for table, names in ((bodies, ("x", "y", "angle")), (motions, ("vx", "vy", "w"))):
         for name in names:
             add(table[name], "<f8")
-    add(np.zeros(len(order)), "<f8")  # asleep: no body sleeps yet
+    asleep = state.bodies.columns.get("asleep")
+    add(np.zeros(len(order)) if asleep is None else asleep[order], "<f8")
     table = state.arbiters
     touching = np.flatnonzero(table.rows["count"][: table.count])
     arbiters, contacts = table.rows[touching], table.contacts[touching]

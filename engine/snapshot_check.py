@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from itertools import pairwise
 
 import numpy as np
 
 from engine import validate
 from engine.effects import BODY_PROPERTIES, SHAPE_PROPERTIES
+from engine.effects.sleeping import SOLVER
 from engine.lacking import refuse_lacking
 from engine.narrow_phase import COLLIDER_OF
 from engine.settings import Settings
@@ -20,8 +22,11 @@ from engine.shapes.polygon import POLYGON
 from engine.shapes.segment import SEGMENT
 from engine.state import State
 from engine.tables import BODY_KINDS, HELD, HULL_POINTS, JOINT_KINDS
+from engine.touching import PAIR
 
+FORCES = ("force_x", "force_y", "torque")
 MAY_BE_INFINITE = ("mass", "inertia")  # of static bodies
+STORAGE_OF = {"shape": "shapes", "body": "bodies"}  # what the columns of a pair are serials of
 SIZES = {  # what a shape cannot be without
     BOX: ("half_x", "half_y"), CIRCLE: ("radius",), CAPSULE: ("half_x", "radius"), SEGMENT: ("half_x",),
     CHAIN: ("half_x",),
@@ -36,7 +41,7 @@ def check_tables(settings: Settings, tables: Mapping[str, np.ndarray]) -> None:
         f"{name}.{column}": np.empty(0, about.dtype)
         for name, storage in state.storages().items()
         for column, about in storage.possible.items()
-    }
+    } | {"touching": np.empty(0, PAIR)}
     for name in tables:
         validate.choice("snapshot table", name, {**expected, **optional})
     for name, example in {**expected, **{n: e for n, e in optional.items() if n in tables}}.items():
@@ -44,7 +49,7 @@ def check_tables(settings: Settings, tables: Mapping[str, np.ndarray]) -> None:
         if table is None or table.dtype != example.dtype or table.ndim != example.ndim:
             raise refuse(name, f"there, of {example.ndim} dimensions and the fields of this version")
         check_finite(name, table)
-    for name in optional.keys() & tables.keys():
+    for name in (optional.keys() & tables.keys()) - {"touching"}:
         storage = name.partition(".")[0]
         if len(tables[name]) != len(tables[f"{storage}.{storage}"]):
             raise refuse(name, f"as long as {storage}.{storage}")
@@ -53,6 +58,8 @@ def check_tables(settings: Settings, tables: Mapping[str, np.ndarray]) -> None:
     check_joints(tables)
     check_arbiters(tables)
     check_fluids(tables)
+    check_touching(tables)
+    check_sleep(settings, tables)
     for name in ("step_count", "time", "last_dt", "explosions"):
         if tables[name] < 0:
             raise refuse(name, ">= 0")
@@ -165,6 +172,28 @@ def check_joints(tables: Mapping[str, np.ndarray]) -> None:
                 raise refuse(f"joints.{name}", f"of no negative {field}")
 
 
+def check_sleep(settings: Settings, tables: Mapping[str, np.ndarray]) -> None:
+    """Who sleeps may, does not move, and touches or is joined to nobody who has weight and is awake."""
+    motions, bodies = tables["bodies.motions"], tables["bodies.bodies"]
+    if (motions["still"] < 0).any():
+        raise refuse("bodies.motions", "of no negative time that a body has been still")
+    for name in ("asleep", "disturbed"):
+        if not np.isin(tables.get(f"bodies.{name}", 0), (0, 1)).all():
+            raise refuse(f"bodies.{name}", "of 0 and 1")
+    asleep = tables.get("bodies.asleep", np.zeros(len(bodies), np.uint8)) != 0
+    weighs = (motions["inverse_mass"] > 0) & (bodies["serial"] >= 0)
+    if asleep.any() and not (settings.sleeping and settings.solver == SOLVER):
+        raise refuse("bodies.asleep", "of bodies that are awake, with these settings")
+    moving = [motions[name] != 0 for name in ("vx", "vy", "w")] + [bodies[name] != 0 for name in FORCES]
+    if (asleep & (~weighs | np.any(moving, axis=0))).any():
+        raise refuse("bodies.asleep", "of bodies that weigh something, without speed and force")
+    joints = tables["joints.joints"]
+    for name, rows in (("arbiters", tables["arbiters"]), ("joints.joints", joints[joints["serial"] >= 0])):
+        one, other = rows["body1"], rows["body2"]
+        if (weighs[one] & weighs[other] & (asleep[one] != asleep[other])).any():
+            raise refuse(name, "between bodies that sleep both or neither")
+
+
 def check_fluids(tables: Mapping[str, np.ndarray]) -> None:
     """Fluids have serials of their own, fill a rectangle, and weigh something."""
     check_serials("fluids", "fluids", tables)
@@ -198,6 +227,17 @@ def check_arbiters(tables: Mapping[str, np.ndarray]) -> None:
     order = np.lexsort((keys[:, 1], keys[:, 0]))
     if (np.diff(order) != 1).any() or len(np.unique(keys, axis=0)) != len(keys) or (keys[:, 0] >= keys[:, 1]).any():
         raise refuse("arbiters", "in ascending order of their serials")
+
+
+def check_touching(tables: Mapping[str, np.ndarray]) -> None:
+    """Pairs whose end is still to be told stand in ascending order, and have serials that were given."""
+    pairs = tables.get("touching", np.empty(0, PAIR))
+    keys = list(zip(pairs["shape1"].tolist(), pairs["shape2"].tolist(), strict=True))
+    if any(first >= second for first, second in pairwise(keys)) or any(first >= second for first, second in keys):
+        raise refuse("touching", "of pairs in ascending order of their serials")
+    for name in PAIR.names or ():
+        if ((pairs[name] < 0) | (pairs[name] >= tables[f"{STORAGE_OF[name[:-1]]}.next_serial"])).any():
+            raise refuse("touching", f"of serials of {STORAGE_OF[name[:-1]]} that were given")
 
 
 def check_serials(storage: str, main: str, tables: Mapping[str, np.ndarray]) -> None:

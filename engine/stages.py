@@ -11,17 +11,22 @@ from collections.abc import Callable
 import numpy as np
 
 from engine.atomics import new_counters
+from engine.awake import list_all
 from engine.breaking import break_joints
 from engine.constants import BIAS_FACTOR, BOUNDS_MARGIN, SLOP
+from engine.continuous.ahead import drop_ahead
+from engine.continuous.content import NAME as CONTINUOUS
+from engine.continuous.content import ahead
 from engine.errors import StepError
 from engine.narrow_phase import TOGETHER
-from engine.narrow_phase.recycling import choose_pairs, choose_together, write_boxes
+from engine.narrow_phase.recycling import choose_pairs, choose_together, write_boxes, write_some_boxes
 from engine.program import PARTS_A_THREAD
 from engine.settings import Settings
 from engine.simd import WIDTH
+from engine.sleeping import carry_impulses
 from engine.softness import stiffness
 from engine.solvers import SOLVERS
-from engine.state import State
+from engine.state import NOTHING, State
 from engine.tables import SOFTNESS_FIELDS
 from engine.threads import share, shares, usable
 
@@ -29,18 +34,28 @@ from engine.threads import share, shares, usable
 def broad_phase(state: State, settings: Settings) -> None:
     """Finds the pairs of shapes whose bounding boxes overlap."""
     arguments = bounding(state)
-    for write_bounds, group in state.bounds_plan:
+    ranks = None if state.boxes_are_stale else state.watched_ranks
+    for write_bounds, group in state.full_plan if ranks is None else state.awake_plan:
         write_bounds(group, *arguments)
-    if state.broad_phase.update(state.bounds):
+    if ranks is None:
+        write_boxes(*boxing(state, NOTHING))
+    else:
+        write_some_boxes(*boxing(state, ranks))
+    state.boxes_are_stale = False
+    if state.broad_phase.update(state.bounds, ranks):
         state.pairs_are_stale = True
+
+
+def boxing(state: State, ranks: np.ndarray) -> tuple:
+    """What kernels take that write the boxes of all shapes, or of those of some ranks."""
+    return state.bounds, state.shapes.order, state.boxes, ranks
 
 
 def bounding(state: State) -> tuple:
     """What kernels that write bounding boxes take after the group of shapes."""
     shapes, hulls = state.shapes.tables["shapes"], state.hulls.tables["hulls"]
     bodies, motions = state.bodies.tables["bodies"], state.bodies.tables["motions"]
-    margin = BOUNDS_MARGIN + 0.5 * float(state.steps["margin"][0])
-    return shapes, hulls, bodies, motions, state.placements, margin, state.bounds
+    return shapes, hulls, bodies, motions, state.placements, state.bounds_margin, state.bounds
 
 
 def update_arbiters(state: State, settings: Settings) -> None:
@@ -52,7 +67,6 @@ def update_arbiters(state: State, settings: Settings) -> None:
 def narrow_phase(state: State, settings: Settings) -> None:
     """Finds where the shapes of each arbiter touch; those whose bodies hardly moved keep their contacts."""
     chosen, arguments = state.chosen, colliding(state)
-    write_boxes(state.bounds, state.shapes.order, state.boxes)
     for collide, indices, number in state.meetings:
         count = _choose(state, indices, number)
         chosen[count : count + WIDTH] = state.arbiters.nothing
@@ -62,6 +76,8 @@ def narrow_phase(state: State, settings: Settings) -> None:
             share(threads, TOGETHER[collide], new_counters(2), firsts, chosen, *arguments)
         elif count:
             collide(chosen, 0, count, *arguments)
+    if CONTINUOUS in state.effects:
+        drop_ahead(*ahead(state))
 
 
 def colliding(state: State) -> tuple:
@@ -146,8 +162,13 @@ def prepare_step(state: State, settings: Settings, dt: float) -> None:
     if state.prepared_for is not settings or (state.prepared_dt, state.prepared_carried) != (dt, carried):
         state.prepared_for, state.prepared_dt, state.prepared_carried = settings, dt, carried
         write_step(state.steps, settings, dt, carried)
+        state.bounds_margin = BOUNDS_MARGIN + 0.5 * float(state.steps["margin"][0])
+        if carried != 1.0:
+            carry_impulses(state, carried)
     if state.stale:
         state.refresh(settings)
+    elif state.lists_are_stale:
+        list_all(state)
 
 
 def write_step(step: np.ndarray, settings: Settings, dt: float, carried: float) -> None:
@@ -174,6 +195,9 @@ def write_step(step: np.ndarray, settings: Settings, dt: float, carried: float) 
         "carried": carried / n,
         "push_out_speed": settings.push_out_speed,
         "restitution_threshold": settings.restitution_threshold,
+        "maximum_speed": settings.maximum_speed,
+        "sleep_speed": settings.sleep_speed,
+        "sleep_time": settings.sleep_time,
     }
     soft = stiffness(settings, dt)
     values |= dict(zip(SOFTNESS_FIELDS, (*soft.contact, *soft.static, *soft.joint), strict=True))

@@ -6,22 +6,25 @@ from typing import Any
 
 import numpy as np
 
-from engine.arbiters import ArbiterTable, follow_pairs, indices_by_collider, mix_friction
+from engine.arbiters import ArbiterTable, follow_pairs, mix_friction
+from engine.awake import list_all, list_arbiters, plan_bounds
 from engine.broad_phase import BROAD_PHASES
-from engine.colouring import Layout, any_change, give_colours
+from engine.colouring import Layout, any_change, any_change_among, give_colours
 from engine.effects import BODY_PROPERTIES, EFFECTS, SHAPE_PROPERTIES
 from engine.effects.filters import drop_filtered
+from engine.effects.sleeping import restless_rows
+from engine.happened import Happened
+from engine.islands import COARSE, DRIVEN, Islands
 from engine.joints.layout import JointLayout, joins
 from engine.mixing import RULES
 from engine.narrow_phase import COLLIDER_OF, COLLIDERS, TALK_COLLIDERS
 from engine.narrow_phase.recycling import BOX
 from engine.pairs import drop_joined
 from engine.settings import Settings
-from engine.shapes import BOUNDS
-from engine.shapes.placing import group_of
 from engine.simd import WIDTH
+from engine.sleeping import fall_asleep, sleeping_rows, wake, wake_touched
 from engine.solvers import SOLVERS
-from engine.storage import Storage
+from engine.storage import Column, Storage
 from engine.tables import (
     BODY,
     DYNAMIC,
@@ -29,6 +32,7 @@ from engine.tables import (
     HULL,
     KINEMATIC,
     SHAPE,
+    STATIC,
     empty,
     free_dtype,
     joint_dtype,
@@ -41,10 +45,23 @@ from engine.tables import (
 class State:
     """The tables of one world. A step refreshes what is `stale` before it looks at it."""
 
+    # What is awake, made by awake.py: rows of bodies, in the order of creation, and filled up to a multiple of eight;
+    awake_order: np.ndarray
+    moving: np.ndarray
+    dynamic: np.ndarray
+    body_lanes: np.ndarray
+    moving_lanes: np.ndarray
+    dynamic_lanes: np.ndarray
+    joined_pairs: np.ndarray  # (J, 2) rows of bodies that are joined;
+    indices: list[tuple[np.ndarray, int]]  # of arbiters, by collider,
+    meetings: list[tuple[Any, np.ndarray, int]]  # with that collider, where there are any;
+    chosen: np.ndarray
+    awake_plan: list[tuple[Any, np.ndarray]]  # groups of shapes, with what finds their boxes
+
     def __init__(self, settings: Settings) -> None:
         precision = settings.precision
         self.precision = precision
-        body_columns = {name: p.column() for name, p in BODY_PROPERTIES.items()}
+        body_columns = {name: p.column() for name, p in BODY_PROPERTIES.items()} | SLEEP_COLUMNS
         shape_columns = {name: p.column() for name, p in SHAPE_PROPERTIES.items()}
         self.bodies = Storage({"bodies": BODY, "motions": motion_dtype(precision)}, body_columns)
         self.shapes = Storage({"shapes": SHAPE}, shape_columns)
@@ -60,6 +77,7 @@ class State:
         self.last_dt = 0.0  # of the last step [s]
         self.explosions = 0  # so far
         self.scratch: dict[str, Any] = {}  # tables that a solver makes for itself; nothing in them lasts
+        self.happened = Happened()  # events, where something calls for them
         self.forced: frozenset[str] = frozenset()  # effects whose code runs though nothing calls for them
         self.suppressed: frozenset[str] = frozenset()  # effects whose code does not run though something does
         self.gathered: dict[str, Any] = {}  # what effects read off the content, until it changes
@@ -73,10 +91,19 @@ class State:
         self.pause = self.pause_left = 0  # steps for which Python does not try that again
         self.threads = 1  # that a step may use
         self.lanes = WIDTH  # contacts and joints that are solved at once: 8, or 1 to compare
+        self.islands = Islands()
+        self.counting = NOTHING  # 0, 1, 2, ...
+        self.ready = np.ones(1, np.int64)  # bodies that have been still long enough to sleep, at most
+        self.lists_are_stale = False  # of what is awake, see awake.py
+        self.boxes_are_stale = False  # all bounding boxes are to be found, not only those of what is awake
+        self.acting: np.ndarray | None = None  # bodies that can change what they touch; None: nobody sleeps
+        self.watched: np.ndarray | None = None  # arbiters to look at; None: all
+        self.watched_ranks: np.ndarray | None = None  # shapes whose boxes may change; None: all
         self.forget_broad_phase()
         self.stale = True  # content or settings changed since the last refresh
         self.prepared_for: Settings | None = None
         self.prepared_dt = self.prepared_carried = 0.0
+        self.bounds_margin = 0.0  # by which bounding boxes are larger [m]
 
     def forget_broad_phase(self) -> None:
         """The next step finds all pairs anew. Which arbiters have contacts does not depend on it."""
@@ -95,6 +122,7 @@ class State:
         for storage in (self.bodies, self.shapes):
             storage.drop_idle_columns()
         self.effects = self.active(settings)
+        self.happened.switch("events" in self.effects)
         self.gathered = {}
         self.solve_plan = None
         self.addresses = {}
@@ -103,12 +131,11 @@ class State:
                 for properties, storage in ((effect.body, self.bodies), (effect.shape, self.shapes)):
                     for item in properties:
                         storage.ensure(item.name)
-        self._refresh_bodies()
+        self._refresh_bodies(settings)
         self._refresh_shapes(settings)
         self._refresh_pairs(settings)
         self.active_joints = self.joints.tables["joints"] if joins(self.effects) else None
-        self.chains = SOLVERS[settings.solver].find_chains(self, settings) if self.active_joints is not None else None
-        self.joint_layout.arrange(self)
+        list_all(self)
         self.forces = [e.apply for e in EFFECTS if e.apply is not None and e.name in self.effects]
         self.stale = False
 
@@ -116,37 +143,37 @@ class State:
         """A column, where its effect is active."""
         return storage.columns.get(name) if effect in self.effects else None
 
-    def _refresh_bodies(self) -> None:
-        bodies = self.bodies.tables["bodies"]
-        order = self.bodies.order
-        kinds = bodies["kind"][order]
-        self.moving = order[kinds != 0]  # rows of bodies that may have a velocity
-        weighs = self.bodies.tables["motions"]["inverse_mass"][order] > 0
-        self.dynamic = order[(kinds == DYNAMIC) & weighs]  # what has no mass feels no force
-        self.body_lanes = self._in_eights(order)
-        self.moving_lanes = self._in_eights(self.moving)
-        self.dynamic_lanes = self._in_eights(self.dynamic)
+    def _refresh_bodies(self, settings: Settings) -> None:
         self.gravity_scales = self.column("gravity scale", self.bodies, "gravity_scale")
         self.linear_damping = self.column("linear damping", self.bodies, "linear_damping")
         self.angular_damping = self.column("angular damping", self.bodies, "angular_damping")
+        self.timed = self.steps if settings.sleeping and "sleeping" in self.effects else None
+        self.restless = restless_rows(self, settings)
+        self.belts = self.column("conveyor", self.shapes, "tangent_speed")
+        motions, order = self.bodies.tables["motions"], self.bodies.order
+        unheld = (motions["inverse_mass"][order] == 0) & (self.bodies.tables["bodies"]["kind"][order] != STATIC)
+        self.islands.flags[DRIVEN] = self.belts is not None or bool(unheld.any())
+        if self.belts is None:
+            self.belts = np.zeros(len(self.shapes.tables["shapes"]))
+        self.wake_restless()
+        self.islands.forget(len(motions))
+        self.ready[0] = self.timed is not None
 
-    def _in_eights(self, rows: np.ndarray) -> np.ndarray:
-        """Rows of bodies, filled up to a multiple of eight with nobody's."""
-        nobody = len(self.bodies.tables["bodies"]) - 1
-        return np.append(rows, np.full(-len(rows) % WIDTH, nobody))
+    def wake_restless(self) -> None:
+        """What sleeps and no longer may, wakes."""
+        sleepers = sleeping_rows(self)
+        wake(self, sleepers[self.restless[sleepers] != 0])
 
     def _refresh_shapes(self, settings: Settings) -> None:
         order = self.shapes.order
         shapes = self.shapes.tables["shapes"]
-        kinds = shapes["kind"][order]
         self.placements = _sized(self.__dict__.get("placements"), len(shapes), placement_dtype(self.precision))
         self.ranks = np.zeros(len(shapes), np.int64)
         self.ranks[order] = np.arange(len(order))
         self.bounds = np.zeros((4, len(order)), np.float32)
         self.boxes = empty(len(shapes), BOX)
-        self.bounds_plan = [
-            (BOUNDS[kind], group_of(np.flatnonzero(kinds == kind), order, shapes)) for kind in np.unique(kinds)
-        ]
+        self.full_plan = plan_bounds(self, np.arange(len(order)))
+        self.boxes_are_stale = True
         body_kinds = self.bodies.tables["bodies"]["kind"][shapes["body"][order]]
         self.groups = np.where(body_kinds == DYNAMIC, 1, np.where(body_kinds == KINEMATIC, 2, 0)).astype(np.uint8)
 
@@ -162,13 +189,22 @@ class State:
         self.joined = self._joined_pairs() if "joined without colliding" in self.effects else None
         self.pairs_are_stale = self.friction_is_stale = True
 
+    def arrange_joints(self, order: np.ndarray) -> None:
+        """Which of the joints in these rows are solved at once, and which of the others side by side."""
+        settings = self.prepared_for
+        solves = self.active_joints is not None and settings is not None
+        self.chains = SOLVERS[settings.solver].find_chains(self, settings, order) if solves and settings else None
+        self.joint_layout.arrange(self, order)
+
     def _joined_pairs(self) -> np.ndarray:
         """(P, 2) int64 serials of bodies joined without colliding, ascending."""
-        joints = self.joints.tables["joints"][self.joints.order]
-        joints = joints[joints["collide_connected"] == 0]
+        joints, order = self.joints.tables["joints"], self.joints.order
+        order = order[joints["collide_connected"][order] == 0]
         serials = self.bodies.tables["bodies"]["serial"]
-        pairs = np.sort(np.stack([serials[joints["body1"]], serials[joints["body2"]]], axis=1), axis=1)
-        return np.unique(pairs, axis=0)
+        one, other = serials[joints["body1"][order]], serials[joints["body2"][order]]
+        low, high = np.minimum(one, other), np.maximum(one, other)
+        pairs = np.stack([low, high], axis=1)[np.lexsort((high, low))]
+        return pairs[np.append(True, (np.diff(pairs, axis=0) != 0).any(axis=1))] if len(pairs) else pairs
 
     # --- pairs and arbiters -------------------------------------------------------------------------------------
 
@@ -190,7 +226,7 @@ class State:
         rule = RULES.index(settings.friction_mixing)
         new.count = count = follow_pairs(
             pairs, count, np.ascontiguousarray(shapes["serial"]), shapes, COLLIDER_OF, rule, old.rows, old.contacts,
-            old.count, new.rows, new.contacts, new.kinds,
+            old.count, new.rows, new.contacts, new.kinds, self.bodies.tables["motions"],
         )  # fmt: skip
         if self.friction_is_stale:
             mix_friction(new.rows, count, shapes, rule)
@@ -198,18 +234,44 @@ class State:
         new.point_at_nobody(len(self.bodies.tables["bodies"]), len(shapes))
         self.arbiters, self.spare_arbiters = new, old
         self.colours_are_stale = True
-        self.indices = indices_by_collider(new.kinds[:count], new.nothing, len(COLLIDERS))
-        self.meetings = [(collide, *own) for collide, own in zip(self.colliders, self.indices, strict=True) if own[1]]
-        self.chosen = new.chosen
+        self.islands.flags[COARSE] = 1  # what has gone may have touched
+        list_arbiters(self)
+
+    def watched_arbiters(self) -> np.ndarray:
+        """Indices of the arbiters to look at, ascending."""
+        if self.watched is not None:
+            return self.watched
+        if len(self.counting) < self.arbiters.count:
+            self.counting = np.arange(2 * self.arbiters.count)
+        return self.counting[: self.arbiters.count]
+
+    def follow_contacts(self) -> None:
+        """Takes up what has begun to touch and what has parted: it wakes what sleeps, joins islands, gets a colour."""
+        table = self.arbiters
+        changed = self.colours_are_stale
+        if not changed:
+            differ, watched = (any_change, NOTHING) if self.watched is None else (any_change_among, self.watched)
+            changed = differ(table.rows, table.count, watched)
+        if changed:
+            if wake_touched(self):
+                list_all(self)
+            self.islands.follow(self.watched_arbiters(), table.rows, self.bodies.tables["motions"])
+        if self.timed is not None and self.ready[0] > 0 and fall_asleep(self):
+            list_all(self)
+            changed = True
+        if changed:
+            self.follow_colours()
 
     def follow_colours(self) -> None:
-        """Gives what has begun to touch a colour, and takes that of what has parted."""
-        table = self.arbiters
-        if not self.colours_are_stale and not any_change(table.rows, table.count):
-            return
-        motions = self.bodies.tables["motions"]
-        give_colours(table.rows, table.count, motions, np.empty(len(motions), np.int64))
-        self.layout.arrange(table.rows["colour"][: table.count], self.lanes, table.nothing)
+        """Gives what touches a colour, and takes that of what has parted. What sleeps keeps its own, and no place."""
+        table, motions = self.arbiters, self.bodies.tables["motions"]
+        watched = self.watched_arbiters()
+        give_colours(table.rows, watched, motions, np.empty(len(motions), np.int64))
+        if self.watched is None:
+            self.layout.arrange(table.rows["colour"][: table.count], self.lanes, table.nothing)
+        else:
+            self.layout.arrange(table.rows["colour"][watched], self.lanes, -1)
+            self.layout.slots = np.append(watched, table.nothing)[self.layout.slots].astype(np.int32)
         self.colours_are_stale = False
         self.solve_plan = None
 
@@ -239,6 +301,7 @@ class State:
         }
         return {
             **saved,
+            **self.happened.save(),
             "arbiters": np.array(table.rows[touching]),
             "contacts": np.array(table.contacts[touching]),
             "step_count": np.array(self.step_count, np.int64),
@@ -261,8 +324,19 @@ class State:
         self.time = float(saved["time"])
         self.last_dt = float(saved["last_dt"])
         self.explosions = int(saved["explosions"])
+        self.happened.load(saved)
         self.forget_broad_phase()
+        self.prepared_for = None
         self.stale = True
+
+    @property
+    def dormant(self) -> bool:
+        """Whether nothing can happen: all that has weight sleeps, and nothing else goes its way."""
+        return (
+            self.acting is not None
+            and not (self.stale or self.lists_are_stale or self.boxes_are_stale or self.pairs_are_stale)
+            and not (self.colours_are_stale or self.acting.any())
+        )
 
     def storages(self) -> dict[str, Storage]:
         """What comes and goes in this world, by name."""
@@ -270,6 +344,13 @@ class State:
             "bodies": self.bodies, "shapes": self.shapes, "hulls": self.hulls, "joints": self.joints,
             "fluids": self.fluids,
         }  # fmt: skip
+
+
+SLEEP_COLUMNS = {
+    "asleep": Column(np.dtype(np.uint8), 0),  # 1: the body sleeps
+    "disturbed": Column(np.dtype(np.uint8), 0),  # 1: a body without weight was moved or changed since the last step
+}
+NOTHING = np.empty(0, np.int64)
 
 
 def _sized(table: np.ndarray | None, count: int, dtype: np.dtype) -> np.ndarray:

@@ -137,7 +137,7 @@ def motion_dtype(precision: str) -> np.dtype:
             ("inverse_inertia", real),  # [1/(kg m^2)], 0 for a static body
             ("cosine", real),  # of the body's angle: made whenever the angle changes
             ("sine", real),
-            ("spare", real),  # eight numbers a row: 32 or 64 bytes
+            ("still", real),  # how long it has been slow enough to sleep, see sleeping.py [s]
         ]
     )
 
@@ -328,7 +328,10 @@ def step_dtype(precision: str) -> np.dtype:
             ("parts", real),  # substeps, as a number of the solver's
             ("carried", real),  # part of a stored impulse that a substep starts from
             ("push_out_speed", real),  # [m/s]
+            ("sleep_speed", real),  # [m/s]
+            ("sleep_time", real),  # [s]
             ("restitution_threshold", real),  # [m/s]
+            ("maximum_speed", real),  # [m/s]
             *((name, real) for name in SOFTNESS_FIELDS),
         ]
     )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 import weakref
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -17,20 +18,23 @@ from engine.diagnostics import Diagnostics, diagnose
 from engine.effects import EffectStatus
 from engine.effects.explosion import explode
 from engine.effects.fluid import Fluid, add_fluid
+from engine.effects.sleeping import SOLVER as SLEEPERS_SOLVER
+from engine.events import Events
 from engine.joints import KINDS, Joining, Joint
 from engine.lacking import effect_statuses, refuse_lacking
 from engine.queries import rows_at
 from engine.records import Arbiter, arbiter_list, contact_records, joint_records
 from engine.removal import destroy_body, destroy_shape
-from engine.run import NOWHERE, run_quietly
+from engine.run import NOWHERE, rest_through, run_quietly
 from engine.settings import Settings
 from engine.shape_handle import ShapeHandle
 from engine.shapes import Shape
+from engine.sleeping import asleep_of, island_names, touch_weights, wake_all
 from engine.snapshot import Snapshot, state_hash
 from engine.snapshot_check import check_tables
 from engine.stages import STAGES, prepare_step
 from engine.state import State
-from engine.tables import BODY_KINDS
+from engine.tables import BODY_KINDS, DYNAMIC
 from engine.threads import MOST as MOST_THREADS
 
 MOST_STEPS = 10**12  # at once
@@ -63,8 +67,12 @@ class World(Configured, Joining):
         """
         dt = self._checked(dt)
         if dt > 0.0:
+            self._state.happened.clear()
             prepare_step(self._state, self._settings, dt)
-            self._finish_step(dt)
+            if self._state.acting is not None and self._state.dormant:
+                rest_through(self._state, 1, dt)
+            else:
+                self._finish_step(dt)
 
     def run(self, steps: int, dt: float) -> None:
         """As many calls of step(dt), bit for bit, but without a look at Python where nothing calls for it.
@@ -75,6 +83,8 @@ class World(Configured, Joining):
         """
         left = validate.whole("steps", steps, 0, MOST_STEPS)
         dt = self._checked(dt)
+        if left > 0 and dt > 0.0:
+            self._state.happened.clear()
         while left > 0 and dt > 0.0:
             prepare_step(self._state, self._settings, dt)
             done, stage = run_quietly(self._state, self._settings, left, dt)
@@ -93,6 +103,9 @@ class World(Configured, Joining):
     def _finish_step(self, dt: float, first: int = 0) -> None:
         """Takes a step that is prepared, from one of its stages on."""
         state, settings = self._state, self._settings
+        happened = state.happened
+        if happened.on:
+            happened.before_step(state)
         before = time.perf_counter()
         for name, stage in STAGES[first:]:
             stage(state, settings)
@@ -102,6 +115,8 @@ class World(Configured, Joining):
         state.step_count += 1
         state.time += dt
         state.last_dt = dt
+        if happened.on:
+            happened.after_step(state, settings.hit_speed)
 
     @property
     def threads(self) -> int:
@@ -237,11 +252,17 @@ class World(Configured, Joining):
         self._content_changed()
 
     def _destroy_joint(self, row: int) -> None:
+        self._joined(row)
         self._state.joints.remove(row)
-        self._content_changed()
+
+    def _joined(self, row: int) -> None:
+        """A joint has come, or goes: its bodies wake."""
+        self._joint_changed(row, structure=True)
 
     def _joint_changed(self, row: int, structure: bool) -> None:
-        """A joint's numbers changed; structure: so that other rows or tables are called for."""
+        """A joint's numbers changed, and its bodies wake; structure: so that other rows or tables are called for."""
+        joint = self._state.joints.tables["joints"][row]
+        touch_weights(self._state, np.array([joint["body1"], joint["body2"]]))
         if structure:
             self._content_changed()
 
@@ -250,6 +271,7 @@ class World(Configured, Joining):
 
     def _content_changed(self) -> None:
         self._state.stale = True
+        self._state.islands.forget(len(self._state.bodies.tables["bodies"]))
 
     # --- what is there ------------------------------------------------------------------------------------------
 
@@ -295,6 +317,17 @@ class World(Configured, Joining):
     def joint_records(self) -> np.ndarray:
         """(J,) JOINT_RECORD: all joints as one table, in the order of creation."""
         return joint_records(self._state)
+
+    @property
+    def events(self) -> Events:
+        """What happened in the last step, or in all steps of the last `run`: engine/events.py says what is told.
+
+        Of what was destroyed, and of what woke or broke between two steps, the step after tells. ValueError unless the
+        setting tell_events is on.
+        """
+        if not self.tell_events:
+            raise validate.refuse("tell_events", False, "True before the step whose events are to be read")
+        return self._state.happened.events()
 
     def shape_records(self) -> np.ndarray:
         """(S,) SHAPE: all pieces of all shapes as one table, in the order of creation: a copy."""
@@ -345,6 +378,30 @@ class World(Configured, Joining):
     def angular_velocities(self) -> np.ndarray:
         """(N,) float64 [rad/s]; in single precision a copy."""
         return self._columns("motions", "w", 1)[:, 0]
+
+    @property
+    def asleep(self) -> np.ndarray:
+        """(N,) bool: who sleeps; living bodies in the order of creation, a copy."""
+        asleep, order = asleep_of(self._state), self._state.bodies.order
+        return np.zeros(len(order), np.bool_) if asleep is None else asleep[order] != 0
+
+    @property
+    def awake_count(self) -> int:
+        """How many dynamic bodies are awake."""
+        kinds = self._state.bodies.tables["bodies"]["kind"][self._state.bodies.order]
+        return int(np.count_nonzero((kinds == DYNAMIC) & ~self.asleep))
+
+    @property
+    def islands(self) -> np.ndarray:
+        """(N,) int64: for each body, in the order of creation, the first body by number that hangs together with it by
+        touch and joints; its own number, if none does.
+        """
+        return island_names(self._state)
+
+    @property
+    def may_sleep(self) -> bool:
+        """Whether the settings let bodies fall asleep."""
+        return self.sleeping and self.solver == SLEEPERS_SOLVER
 
     def body_at(self, point: Pair, kind: str = "dynamic") -> Body | None:
         """The body of that kind under a point of the world [m]; of several, the one created last."""
@@ -399,6 +456,8 @@ class World(Configured, Joining):
 
     def _accept(self, settings: Settings) -> None:
         refuse_lacking(self._state, settings)
+        if settings != replace(self._settings, broad_phase=settings.broad_phase):
+            wake_all(self._state)
 
     def _body_in_row(self, row: int) -> Body:
         serial = int(self._state.bodies.tables["bodies"]["serial"][row])

@@ -28,6 +28,7 @@ def static_entities(view: tuple[float, float, float]) -> list[tuple[str, rr.AsCo
         (schema.CAMERA, rr.Transform3D(translation=[x, y, CAMERA_DISTANCE])),
         (schema.CONTACT_POINTS, rr.Points3D.from_fields(colors=[palette.CONTACT], radii=ui(2.5))),
         (schema.IMPULSE_ARROWS, rr.Arrows3D.from_fields(colors=[palette.IMPULSE], radii=ui(1.0))),
+        (schema.HIT_POINTS, rr.Points3D.from_fields(colors=[palette.HIT])),
         (schema.JOINT_LINES, rr.LineStrips3D.from_fields(colors=[palette.JOINT], radii=ui(1.0))),
         (schema.ENERGY, _lines(["kinetic", "potential", "total"], [palette.KINETIC, palette.POTENTIAL, palette.TOTAL])),
         (schema.PENETRATION, _lines(["deepest"], [palette.PENETRATION])),
@@ -45,7 +46,10 @@ def layout() -> rrb.Blueprint:
     scene = rrb.Spatial2DView(
         name="Scene", origin=schema.CAMERA, contents=["/world/**"], background=[*palette.BACKGROUND, 255]
     )
-    log = rrb.TextLogView(name="Commands", origin=schema.EVENTS)
+    log = rrb.Tabs(
+        rrb.TextLogView(name="Commands", origin=schema.EVENTS),
+        rrb.TextLogView(name="Events", origin=schema.HAPPENED),
+    )
     plots = rrb.Vertical(
         _plot("Energy [J]", schema.ENERGY),
         _plot("Penetration [m]", schema.PENETRATION),

@@ -8,7 +8,7 @@ import numpy as np
 
 from recordings import schema
 from recordings.schema import RecordingError
-from recordings.shot import checksum, content_checksum
+from recordings.shot import checksum, content_checksum, happened_parts
 from recordings.stored_table import StoredTable
 
 
@@ -32,9 +32,15 @@ def whole_content(path: Path, tables: dict[str, StoredTable]) -> StoredTable:
 
 
 def check_steps(
-    path: Path, tables: dict[str, StoredTable], commands: dict[int, list[str]], content: StoredTable
+    path: Path,
+    tables: dict[str, StoredTable],
+    every_step: tuple[schema.Table, ...],
+    commands: dict[int, list[str]],
+    content: StoredTable,
 ) -> None:
     """Compares each step's checksum with its content, and drops the commands of steps that were cut off.
+
+    every_step: the tables that have a row for each step, bodies first and the steps' own last.
 
     Raises:
         RecordingError: they differ.
@@ -43,11 +49,19 @@ def check_steps(
     for step in [step for step in commands if not len(steps) or step > steps[-1]]:
         del commands[step]
     for step in map(int, steps):
-        parts = [tables[table.path].at(step) for table in schema.EVERY_STEP]
+        parts = [tables[table.path].at(step) for table in every_step]
         numbers = parts[-1].copy()
-        if len(numbers) != 1 or len(parts[0]) != len(tables[schema.ROSTER.path].at(step)):
+        bodies = len(tables[schema.ROSTER.path].at(step))
+        of_bodies = [
+            len(rows) for rows, table in zip(parts, every_step, strict=True) if table in (schema.BODIES, schema.SLEEP)
+        ]
+        if len(numbers) != 1 or any(number != bodies for number in of_bodies):
             raise RecordingError(f"{path}: damaged at step {step}")
         expected = int(numbers["checksum"][0])
         numbers["checksum"] = 0
-        if checksum(step, [*parts[:-1], numbers, content.at(step)], commands.get(step, [])) != expected:
+        happened = {kind: tables[table.path].exactly(step) for kind, table in schema.HAPPENINGS.items()}
+        if not np.isin(happened["moved"]["body"], tables[schema.ROSTER.path].at(step)["serial"]).all():
+            raise RecordingError(f"{path}: damaged at step {step}")
+        own = [*parts[:-1], numbers, content.at(step), *happened_parts(happened)]
+        if checksum(step, own, commands.get(step, [])) != expected:
             raise RecordingError(f"{path}: damaged at step {step}")

@@ -22,6 +22,7 @@ BODIES = np.array(  # moving bodies by serial
 )
 CONTACT = (255, 221, 128)
 IMPULSE = (255, 138, 101)
+HIT = (255, 244, 214)
 JOINT = (186, 198, 214)
 
 KINETIC = (226, 168, 93)

@@ -7,6 +7,8 @@ from typing import Any, Protocol
 
 import numpy as np
 
+from engine import Events
+
 
 class DiagnosticsLike(Protocol):
     """engine.Diagnostics, by structure."""
@@ -46,6 +48,8 @@ class StateLike(Protocol):
     @property
     def angular_velocities(self) -> np.ndarray: ...  # (N,) [rad/s]
     @property
+    def asleep(self) -> np.ndarray: ...  # (N,) bool
+    @property
     def shape_serials(self) -> np.ndarray: ...  # (S,) int64
     @property
     def owners(self) -> np.ndarray: ...  # (S,) int64, index of its body
@@ -63,6 +67,8 @@ class StateLike(Protocol):
     def contacts(self) -> np.ndarray: ...  # (C,) CONTACT_RECORD
     @property
     def joints(self) -> np.ndarray: ...  # (J,) JOINT_RECORD
+    @property
+    def events(self) -> Events: ...  # of this step
 
 
 class FrameLike(StateLike, Protocol):

@@ -11,7 +11,7 @@ import pyarrow as pa
 
 from recordings import schema
 from recordings.checks import check_steps, whole_content
-from recordings.older import upgraded
+from recordings.older import nobody_asleep, pinned, upgraded
 from recordings.recording import Recording, contiguous
 from recordings.rrd import Chunk, is_finished, read_chunks
 from recordings.schema import RecordingError
@@ -32,14 +32,19 @@ def read(path: Path | str) -> Recording:
     start, snapshot = parse_start(path, chunks[schema.START])
     commands = _commands(path, chunks[schema.COMMANDS])
     on_change = (schema.ROSTER_1,) if start["schema"] == 1 else schema.ON_CHANGE
-    tables = {table.path: gather(path, table, chunks[table.path]) for table in (*schema.EVERY_STEP, *on_change)}
-    stored_steps = _whole_steps(path, tables, start["step"])
+    every_step = schema.EVERY_STEP_2 if start["schema"] < 3 else schema.EVERY_STEP
+    every = (*every_step, *on_change, *schema.HAPPENINGS.values())
+    tables = {table.path: gather(path, table, chunks[table.path]) for table in every}
+    stored_steps = _whole_steps(path, tables, every_step, start["step"])
     closed = _is_closed(path, chunks[schema.END], stored_steps)
     if start["schema"] == 1:
-        check_steps(path, tables, commands, tables[schema.ROSTER.path])
+        check_steps(path, tables, every_step, commands, tables[schema.ROSTER.path])
         tables |= upgraded(tables[schema.ROSTER.path])
     else:
-        check_steps(path, tables, commands, whole_content(path, tables))
+        check_steps(path, tables, every_step, commands, whole_content(path, tables))
+    if start["schema"] < 3:
+        tables |= nobody_asleep(tables[schema.BODIES.path])
+        tables |= pinned(tables[schema.JOINTS.path])
     numbers = tables[schema.STEPS.path].rows[1:]
     return Recording(
         path=path,
@@ -89,18 +94,20 @@ def _commands(path: Path, chunks: list[Chunk]) -> dict[int, list[str]]:
     return commands
 
 
-def _whole_steps(path: Path, tables: dict[str, StoredTable], start_step: int) -> np.ndarray:
+def _whole_steps(
+    path: Path, tables: dict[str, StoredTable], every_step: tuple[schema.Table, ...], start_step: int
+) -> np.ndarray:
     """The steps that every table has; the rest, which a kill cut off, is dropped from all tables."""
     counts = []
-    for table in schema.EVERY_STEP:
+    for table in every_step:
         steps = tables[table.path].steps
         if not np.array_equal(steps, np.arange(start_step, start_step + len(steps))):
             raise RecordingError(f"{path}: damaged: steps are missing in {table.path}")
         counts.append(len(steps))
-    for table in schema.EVERY_STEP:
+    for table in every_step:
         tables[table.path] = tables[table.path].first(min(counts))
     steps = tables[schema.STEPS.path].steps
-    for table in schema.ON_CHANGE:
+    for table in (*schema.ON_CHANGE, *schema.HAPPENINGS.values()):
         if table.path in tables:
             begun = tables[table.path]
             tables[table.path] = begun.first(int(np.searchsorted(begun.steps, steps[-1], "right")) if len(steps) else 0)

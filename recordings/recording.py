@@ -8,7 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from engine import validate
+from engine import Events, validate
+from engine.events import DTYPES
 from recordings import schema
 from recordings.stored_table import StoredTable
 
@@ -26,6 +27,7 @@ class State:
     angles: np.ndarray  # (N,) float64 [rad]
     velocities: np.ndarray  # (N, 2) float64 [m/s]
     angular_velocities: np.ndarray  # (N,) float64 [rad/s]
+    asleep: np.ndarray  # (N,) bool
     shape_serials: np.ndarray  # (S,) int64
     owners: np.ndarray  # (S,) int64, index of its body in the arrays above
     shape_kinds: np.ndarray  # (S,) uint8, index into engine.SHAPE_KINDS
@@ -35,6 +37,7 @@ class State:
     corners: np.ndarray  # (sum of the counts, 2) float64, in the pieces' own frames [m]
     contacts: np.ndarray  # (C,) engine.CONTACT_RECORD
     joints: np.ndarray  # (J,) engine.JOINT_RECORD
+    events: Events  # of this step; empty where the setting tell_events was off
 
 
 @dataclass(frozen=True)
@@ -87,6 +90,7 @@ class Recording:
             angles=contiguous(bodies[:, 2]),
             velocities=contiguous(bodies[:, 3:5]),
             angular_velocities=contiguous(bodies[:, 5]),
+            asleep=contiguous(self._tables[schema.SLEEP.path].at(step)["asleep"] != 0),
             shape_serials=contiguous(pieces["serial"]),
             owners=contiguous(np.searchsorted(roster["serial"], pieces["owner"])),
             shape_kinds=contiguous(pieces["shape_kind"]),
@@ -96,7 +100,22 @@ class Recording:
             corners=contiguous(np.column_stack([corners["x"], corners["y"]])),
             contacts=self._tables[schema.CONTACTS.path].at(step),
             joints=self._tables[schema.JOINTS.path].at(step),
+            events=self._events(step, roster["serial"], bodies),
         )
+
+    def _events(self, step: int, serials: np.ndarray, bodies: np.ndarray) -> Events:
+        """What happened in a step; where a body that moved is, `bodies` (N, 6) says."""
+        found = {}
+        for kind, table in schema.HAPPENINGS.items():
+            stored = self._tables[table.path].exactly(step)
+            rows = found[kind] = np.empty(len(stored), DTYPES[kind])
+            rows["step"] = step
+            for name in table.dtype.names or ():
+                rows[name] = stored[name]
+        moved = found["moved"]
+        places = bodies[np.searchsorted(serials, moved["body"])]
+        moved["x"], moved["y"], moved["angle"] = places[:, 0], places[:, 1], places[:, 2]
+        return Events(**{kind: contiguous(rows) for kind, rows in found.items()})
 
 
 def contiguous(array: np.ndarray) -> np.ndarray:

@@ -16,6 +16,7 @@ from recordings.blueprint import layout, stage_lines, static_entities
 from recordings.bodies_view import BodiesView
 from recordings.columns import Sheet, batch
 from recordings.diagnostics_view import MarksView, PlotsView, event_sheets
+from recordings.events_view import HitsView, happened_sheets
 from recordings.piped_file import PipedFile
 from recordings.protocols import StartLike
 from recordings.roster import Run, runs
@@ -37,6 +38,7 @@ class RrdFile:
         self._bodies = BodiesView(start.view[2])
         self._marks = MarksView(start.view[2])
         self._plots = PlotsView()
+        self._hits = HitsView(start.view[2])
         self._stage_count = 0
         try:
             self._disk = PipedFile(path)
@@ -93,6 +95,8 @@ class RrdFile:
         for run in every_run:
             self._send_sheets(self._bodies.sheets(run))
         for sheets in (self._marks.sheets(shots), self._plots.sheets(shots), event_sheets(shots)):
+            self._send_sheets(sheets)
+        for sheets in (self._hits.sheets(shots), happened_sheets(shots)):
             self._send_sheets(sheets)
         if len(self._plots.stages) != self._stage_count:
             self._stage_count = len(self._plots.stages)

@@ -1,8 +1,8 @@
 """What a recording holds and where: entity paths, tables with their columns, versions.
 
 A table is one entity of the file with one component a field; each step has one row of it, which holds one value a body
-(or contact, or joint). The tables `ON_CHANGE`, and `COMMANDS`, have a row only where something changed. Everything that
-is not under `/state` is there to look at.
+(or contact, or joint). The tables `ON_CHANGE`, `COMMANDS`, and those in `HAPPENINGS` have a row only where something
+changed or happened. Everything that is not under `/state` is there to look at.
 """
 
 from __future__ import annotations
@@ -12,9 +12,11 @@ from typing import NamedTuple
 import numpy as np
 
 from engine import CONTACT_RECORD, JOINT_RECORD
+from engine.events import DTYPES
 
 APPLICATION = "tumble"  # rerun's application id: which program a file belongs to
-VERSION = 2  # of this schema; a reader refuses newer ones and knows all older ones. 1: every body had one shape
+VERSION = 3  # of this schema; a reader refuses newer ones and knows all older ones. 1: every body had one shape;
+# 2: no events, one kind of joint, and not told who sleeps
 
 STEP_TIMELINE = "step"  # steps since the scene began
 TIME_TIMELINE = "sim_time"  # simulated time, rounded to ns: to look at (STEPS.time is exact)
@@ -34,12 +36,14 @@ CAMERA = "/world/camera"
 CONTACT_POINTS = "/world/contacts"
 IMPULSE_ARROWS = "/world/impulses"
 JOINT_LINES = "/world/joints"
+HIT_POINTS = "/world/hits"
 
 ENERGY = "/diagnostics/energy"
 PENETRATION = "/diagnostics/penetration"
 COUNTS = "/diagnostics/counts"
 STAGE_TIMES = "/diagnostics/time_ms"
-EVENTS = "/events"
+EVENTS = "/events"  # the log of commands
+HAPPENED = "/happened"  # the log of what begins, hits, breaks ...
 
 
 class RecordingError(Exception):
@@ -78,6 +82,7 @@ BODIES = Table(
         ]
     ),
 )
+SLEEP = Table("/state/sleep", "tumble.Sleep", np.dtype([("asleep", "u1")]))  # 1: the body sleeps
 ROSTER = Table(
     "/state/roster",
     "tumble.Roster",
@@ -122,6 +127,11 @@ ROSTER_1 = Table(  # of version 1
 )
 CONTACTS = Table("/state/contacts", "tumble.Contacts", _packed(CONTACT_RECORD))
 JOINTS = Table("/state/joints", "tumble.Joints", _packed(JOINT_RECORD))
+JOINTS_2 = Table(  # of versions 1 and 2
+    JOINTS.path,
+    JOINTS.archetype,
+    np.dtype([(name, JOINTS.dtype[name]) for name in JOINTS.dtype.names or () if name not in ("turn_impulse", "kind")]),
+)
 STEPS = Table(
     "/state/steps",
     "tumble.Steps",
@@ -140,5 +150,16 @@ STEPS = Table(
         ]
     ),
 )
-EVERY_STEP = (BODIES, CONTACTS, JOINTS, STEPS)  # tables with a row for each step
+EVERY_STEP = (BODIES, SLEEP, CONTACTS, JOINTS, STEPS)  # tables with a row for each step
+EVERY_STEP_2 = (BODIES, CONTACTS, JOINTS_2, STEPS)  # of versions 1 and 2
 ON_CHANGE = (ROSTER, PIECES, CORNERS)  # tables with a row where bodies or shapes came or went, all of them then
+
+
+def _stored(kind: str, dtype: np.dtype) -> Table:
+    """Events of a kind without what the step says already: its number, and where bodies are after it."""
+    known = ("step", "x", "y", "angle") if kind == "moved" else ("step",)
+    names = [name for name in dtype.names or () if name not in known]
+    return Table(f"/state/events/{kind}", f"tumble.Events.{kind}", np.dtype([(name, dtype[name]) for name in names]))
+
+
+HAPPENINGS = {kind: _stored(kind, dtype) for kind, dtype in DTYPES.items()}  # a row where some happened in a step

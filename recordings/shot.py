@@ -9,8 +9,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from engine import Events
 from recordings.protocols import FrameLike
-from recordings.schema import BODIES, CONTACTS, CORNERS, JOINTS, PIECES, ROSTER, STEPS
+from recordings.schema import BODIES, CONTACTS, CORNERS, HAPPENINGS, JOINTS, PIECES, ROSTER, SLEEP, STEPS
 
 _OVERHEAD = 1024  # bytes a shot takes beside its arrays, roughly
 
@@ -28,6 +29,7 @@ class Shot:
     angles: np.ndarray  # (N,) [rad]
     velocities: np.ndarray  # (N, 2) [m/s]
     angular_velocities: np.ndarray  # (N,) [rad/s]
+    asleep: np.ndarray  # (N,) bool
     shape_serials: np.ndarray  # (S,) int64
     owners: np.ndarray  # (S,) int64, index of its body
     shape_kinds: np.ndarray  # (S,) uint8
@@ -37,6 +39,7 @@ class Shot:
     corners: np.ndarray  # (sum of the counts, 2) [m]
     contacts: np.ndarray  # (C,)
     joints: np.ndarray  # (J,)
+    events: Events
     diagnostics: tuple[float, float, float, float, float, float, int]  # in the order of STEPS
     stage_ms: dict[str, float]  # [ms]
     commands: tuple[str, ...]  # one JSON text each
@@ -44,8 +47,9 @@ class Shot:
     @property
     def nbytes(self) -> int:
         """Memory that this shot holds, roughly [bytes]."""
-        bodies, pieces = 57 * len(self.serials), 58 * len(self.shape_serials)
-        return _OVERHEAD + bodies + pieces + self.corners.nbytes + self.contacts.nbytes + self.joints.nbytes
+        bodies, pieces = 58 * len(self.serials), 58 * len(self.shape_serials)
+        events = sum(rows.nbytes for rows in self.events)
+        return _OVERHEAD + bodies + pieces + events + self.corners.nbytes + self.contacts.nbytes + self.joints.nbytes
 
 
 def take(frame: FrameLike) -> Shot:
@@ -61,6 +65,7 @@ def take(frame: FrameLike) -> Shot:
         angles=_settled(frame.angles),
         velocities=_settled(frame.velocities),
         angular_velocities=_settled(frame.angular_velocities),
+        asleep=_settled(frame.asleep),
         shape_serials=_settled(frame.shape_serials),
         owners=_settled(frame.owners),
         shape_kinds=_settled(frame.shape_kinds),
@@ -70,6 +75,7 @@ def take(frame: FrameLike) -> Shot:
         corners=_settled(frame.corners),
         contacts=_settled(frame.contacts),
         joints=_settled(frame.joints),
+        events=Events(*map(_settled, frame.events)),
         diagnostics=(
             d.kinetic_energy,
             d.potential_energy,
@@ -100,6 +106,11 @@ def body_rows(shots: list[Shot]) -> np.ndarray:
     np.concatenate([shot.velocities for shot in shots], out=numbers[:, 3:5])
     np.concatenate([shot.angular_velocities for shot in shots], out=numbers[:, 5])
     return rows
+
+
+def sleep_rows(shots: list[Shot]) -> np.ndarray:
+    """The SLEEP table of all shots, one after the other."""
+    return np.concatenate([shot.asleep for shot in shots]).astype(np.uint8).view(SLEEP.dtype)
 
 
 def contact_rows(shots: list[Shot]) -> np.ndarray:
@@ -136,13 +147,28 @@ def corner_rows(shot: Shot) -> np.ndarray:
     return rows
 
 
+def event_rows(events: Events) -> dict[str, np.ndarray]:
+    """The rows of one step for every table in HAPPENINGS."""
+    found = {}
+    for kind, table in HAPPENINGS.items():
+        found[kind] = np.empty(len(getattr(events, kind)), table.dtype)
+        for name in table.dtype.names or ():
+            found[kind][name] = getattr(events, kind)[name]
+    return found
+
+
+def happened_parts(rows: dict[str, np.ndarray]) -> list[np.ndarray]:
+    """What takes part in the checksum of a step: nothing where nothing happened, as before there were events."""
+    return list(rows.values()) if any(map(len, rows.values())) else []
+
+
 def step_rows(shots: list[Shot]) -> np.ndarray:
     """The STEPS table of all shots, (K,), its checksums still zero."""
     return np.array([(shot.time, shot.dt, *shot.diagnostics, 0) for shot in shots], STEPS.dtype)
 
 
 def checksum(step: int, parts: Iterable[np.ndarray], commands: Iterable[str]) -> int:
-    """CRC-32 of one step: its number, its rows of every table in EVERY_STEP, then its content and its commands.
+    """CRC-32 of one step: its number, its rows of every table in EVERY_STEP, its content, its events, its commands.
 
     The STEPS row takes part with its checksum set to zero. The content is what `content_checksum` gives; in version 1
     it was the roster itself.

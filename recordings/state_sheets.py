@@ -19,9 +19,12 @@ from recordings.shot import (
     contact_rows,
     content_checksum,
     corner_rows,
+    event_rows,
+    happened_parts,
     joint_rows,
     piece_rows,
     roster_rows,
+    sleep_rows,
     step_rows,
 )
 
@@ -48,7 +51,9 @@ class StateSheets:
         commanded = [shot for shot in shots if shot.commands]
         if commanded:
             yield _commands_sheet(commanded)
-        yield from _every_step_sheets(shots, contents)
+        happened = [event_rows(shot.events) for shot in shots]
+        yield from _happening_sheets(shots, happened)
+        yield from _every_step_sheets(shots, contents, happened)
 
 
 def content_rows(shot: Shot) -> list[np.ndarray]:
@@ -56,11 +61,23 @@ def content_rows(shot: Shot) -> list[np.ndarray]:
     return [roster_rows(shot), piece_rows(shot), corner_rows(shot)]
 
 
-def _every_step_sheets(shots: list[Shot], contents: list[np.ndarray]) -> Iterator[Sheet]:
+def _happening_sheets(shots: list[Shot], happened: list[dict[str, np.ndarray]]) -> Iterator[Sheet]:
+    """The tables of events, where there are some."""
+    for kind, table in schema.HAPPENINGS.items():
+        found = [(shot, rows[kind]) for shot, rows in zip(shots, happened, strict=True) if len(rows[kind])]
+        if found:
+            own, rows = zip(*found, strict=True)
+            yield _table_sheet(table, list(own), np.concatenate(rows), [len(part) for part in rows])
+
+
+def _every_step_sheets(
+    shots: list[Shot], contents: list[np.ndarray], happened: list[dict[str, np.ndarray]]
+) -> Iterator[Sheet]:
     """The tables that have a row for each step."""
-    tables = [body_rows(shots), contact_rows(shots), joint_rows(shots), step_rows(shots)]
+    tables = [body_rows(shots), sleep_rows(shots), contact_rows(shots), joint_rows(shots), step_rows(shots)]
     lengths = [
         [len(shot.serials) for shot in shots],
+        [len(shot.asleep) for shot in shots],
         [len(shot.contacts) for shot in shots],
         [len(shot.joints) for shot in shots],
         [1] * len(shots),
@@ -68,7 +85,9 @@ def _every_step_sheets(shots: list[Shot], contents: list[np.ndarray]) -> Iterato
     ends = [np.cumsum(of_table) for of_table in lengths]
     for i, shot in enumerate(shots):
         parts = [rows[end[i] - count[i] : end[i]] for rows, end, count in zip(tables, ends, lengths, strict=True)]
-        tables[-1]["checksum"][i] = checksum(shot.step, [*parts, contents[i]], shot.commands)
+        tables[-1]["checksum"][i] = checksum(
+            shot.step, [*parts, contents[i], *happened_parts(happened[i])], shot.commands
+        )
     for table, rows, of_table in zip(schema.EVERY_STEP, tables, lengths, strict=True):
         yield _table_sheet(table, shots, rows, of_table)
 

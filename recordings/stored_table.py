@@ -24,6 +24,12 @@ class StoredTable(NamedTuple):
         entry = int(np.searchsorted(self.steps, step, side="right")) - 1
         return self.rows[self.starts[entry] : self.starts[entry + 1]] if entry >= 0 else self.rows[:0]
 
+    def exactly(self, step: int) -> np.ndarray:
+        """The rows of that step's own entry; none if it has none."""
+        entry = int(np.searchsorted(self.steps, step))
+        there = entry < len(self.steps) and self.steps[entry] == step
+        return self.rows[self.starts[entry] : self.starts[entry + 1]] if there else self.rows[:0]
+
     def first(self, count: int) -> StoredTable:
         """The same table with its first entries only."""
         return StoredTable(self.steps[:count], self.starts[: count + 1], self.rows[: self.starts[count]])

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from engine.events import DTYPES
 from recordings.protocols import StateLike
 from recordings.recording import Recording
 from recordings.schema import CONTACTS, JOINTS
@@ -19,7 +20,7 @@ class Difference:
     """The first place where the computed states leave the recorded ones."""
 
     step: int
-    body: int | None  # serial; of a contact or joint its first body; None if the whole step differs
+    body: int | None  # serial; of a contact, joint or event its first body; None if the whole step differs
     field: str
     recorded: object
     computed: object
@@ -66,13 +67,27 @@ def compare_states(recorded: StateLike, computed: StateLike) -> Difference | Non
         ("velocity x", recorded.velocities[:, 0], computed.velocities[:, 0]),
         ("velocity y", recorded.velocities[:, 1], computed.velocities[:, 1]),
         ("angular velocity", recorded.angular_velocities, computed.angular_velocities),
+        ("asleep", recorded.asleep, computed.asleep),
     ]
     return (
         _first_difference(step, serials, columns)
         or _compare_pieces(recorded, computed)
         or _compare_records(step, "contact", recorded.contacts, computed.contacts, CONTACTS.dtype)
         or _compare_records(step, "joint", recorded.joints, computed.joints, JOINTS.dtype)
+        or _compare_events(recorded, computed)
     )
+
+
+def _compare_events(recorded: StateLike, computed: StateLike) -> Difference | None:
+    """What happened in the step; of older recordings, and where the world was not asked, nothing on either side."""
+    for kind, dtype in DTYPES.items():
+        noun = f"{kind.replace('_', ' ')} event"
+        found = _compare_records(
+            recorded.step, noun, getattr(recorded.events, kind), getattr(computed.events, kind), dtype
+        )
+        if found is not None:
+            return found
+    return None
 
 
 def _compare_pieces(recorded: StateLike, computed: StateLike) -> Difference | None:
@@ -106,7 +121,8 @@ def _compare_records(
     if len(recorded) != len(computed):
         return Difference(step, None, f"{noun} count", len(recorded), len(computed))
     columns = [(f"{noun} {name}", recorded[name], computed[name]) for name in dtype.names or ()]
-    return _first_difference(step, recorded["body1"], columns)
+    whose = "body1" if "body1" in (dtype.names or ()) else "body"
+    return _first_difference(step, recorded[whose], columns)
 
 
 def _first_difference(

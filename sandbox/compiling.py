@@ -57,6 +57,8 @@ def exercise(precision: str) -> None:
         state.forced = frozenset(effect.name for effect in EFFECTS if effect.name not in solver.lacks)
         state.stale = True
         simulation.step()
+        simulation.world.bodies[2].velocity = (900.0, 0.0)  # so fast that it is swept
+        simulation.step()
     crowd = World(precision=precision, threads=2)
     fill_to_share(crowd)
     crowd.step(TIME_STEP)
@@ -79,6 +81,7 @@ def fill(world: World) -> None:
         for _ in range(2):
             body = world.create_body(position=(0.1 * number, 0.2))
             body.add_shape(shape.filling(1.0, 1.0))
+    world.create_body(Box(1, 1), kind="kinematic")
     world.create_joint_revolute(ground, world.bodies[1], anchor=(0, 0), collide_connected=False)
 
 

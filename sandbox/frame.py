@@ -6,8 +6,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from engine import Diagnostics, Settings
+from engine import Diagnostics, Events, Settings
 from engine.effects import EffectStatus
+from engine.events import NOTHING
 
 
 @dataclass(frozen=True)
@@ -41,6 +42,7 @@ class Frame:
     angles: np.ndarray  # (N,) float64, unwrapped [rad]
     velocities: np.ndarray  # (N, 2) float64, of the centres of mass [m/s]
     angular_velocities: np.ndarray  # (N,) float64 [rad/s]
+    asleep: np.ndarray  # (N,) bool, who sleeps
     shape_serials: np.ndarray  # (S,) int64, creation number of each piece
     owners: np.ndarray  # (S,) int64, which body it belongs to: index into the arrays above
     shape_kinds: np.ndarray  # (S,) uint8, index into engine.SHAPE_KINDS
@@ -55,6 +57,8 @@ class Frame:
     settings: Settings
     bounds: np.ndarray = field(default_factory=lambda: np.zeros((0, 4), np.float32))  # (S, 4): the pieces' boxes as the
     # broad phase has them, lower x and y, upper x and y [m]; a recording does not hold them: (0, 4)
+    events: Events = NOTHING  # since the frame before, where the setting tell_events is on
+    events_lost: int = 0  # that are not among them: too many came since
     effects: tuple[EffectStatus, ...] = ()  # every effect the engine has; of a recording none
     stage_ms: dict[str, float] = field(default_factory=dict)  # time of each stage of this step [ms]
     commands: tuple[dict, ...] = ()  # commands applied just before this step, as JSON-ready dicts

@@ -6,11 +6,12 @@ import re
 import time
 from collections.abc import Callable
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib import metadata
 from pathlib import Path
 from typing import Any
 
+from engine.events import NOTHING
 from sandbox.frame import Frame
 from sandbox.simulation import Simulation
 from sandbox.viewer import Viewer
@@ -58,7 +59,7 @@ class PartFile:
         self.part = path.with_name(path.name + ".part")
         self._viewer = open_recorder(self.part, recording_start(simulation))
         try:
-            self._viewer.show(simulation.frame())
+            self._viewer.show(replace(simulation.frame(), events=NOTHING))  # what led here is not recorded
         except Exception:
             with suppress(Exception):  # the first error says more
                 self._viewer.close()

@@ -15,6 +15,7 @@ from engine.constants import float32_value
 from sandbox.commands import PhysicsCommand
 from sandbox.content import ContentKeeper
 from sandbox.frame import Frame, Status
+from sandbox.gathering import Gathering
 from sandbox.hands import Hand, pull
 from sandbox.scenes import Scene, find_scene
 
@@ -33,6 +34,7 @@ class Simulation:
         self.bomb_serial = -1
         self.content = 0  # changes whenever bodies came or went
         self._keeper = ContentKeeper()
+        self._events = Gathering()  # since the last frame
 
     def apply(self, command: PhysicsCommand) -> None:
         """Applies a command before the next step. ValueError if it cannot be done now; then nothing changes."""
@@ -49,6 +51,8 @@ class Simulation:
             else:
                 pull(self.hands[hand_id], body, self.dt)
         self.world.step(self.dt)
+        if self.world.tell_events:
+            self._events.add(self.world.events)
 
     # --- what commands ask for ----------------------------------------------------------------------------------
 
@@ -114,11 +118,13 @@ class Simulation:
         hands = {int(key): Hand.from_dict(hand) for key, hand in extras["hands"].items()}
         self.world.restore(snapshot)
         self.bomb_serial, self.hands = bomb_serial, hands
+        self._events.clear()
         self.content += 1
 
     def frame(self, commands: tuple[dict, ...] = (), status: Status | None = None) -> Frame:
-        """What there is to see now."""
+        """What there is to see now, and what happened since the last call."""
         world = self.world
+        events, events_lost = self._events.take()
         frame = Frame(
             scene=self.scene.name,
             step=world.step_count,
@@ -128,12 +134,15 @@ class Simulation:
             angles=np.array(world.angles),
             velocities=np.array(world.velocities),
             angular_velocities=np.array(world.angular_velocities),
+            asleep=world.asleep,
             **self._keeper.content(world, self.content)._asdict(),
             bounds=np.array(world.bounds),
             contacts=world.contact_records(),
             joints=world.joint_records(),
             diagnostics=world.diagnostics(),
             settings=world.settings,
+            events=events,
+            events_lost=events_lost,
             effects=world.effects,
             stage_ms={name: 1e3 * seconds for name, seconds in world.stage_times.items()},
             commands=commands,

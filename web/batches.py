@@ -56,11 +56,12 @@ class Batch:
             receive_shadow=False,
         )
         self._pieces = np.zeros(0, np.int64)
+        self._tones = np.zeros((0, 1))
         self._offsets: np.ndarray | None = None  # None: all are zero, as most are
         self._z = 0.0
 
-    def select(self, parts: list[Part], colours: np.ndarray, stage: Stage) -> None:
-        """Take up these parts; `colours` are those of all pieces of the frame, (S, 3)."""
+    def select(self, parts: list[Part], stage: Stage) -> None:
+        """Take up these parts. They have no colours yet."""
         if not parts and not len(self._pieces):
             return
         self._z = stage.z(self._layer)
@@ -69,14 +70,17 @@ class Batch:
         self._offsets = offsets if offsets.any() else None
         scales = np.full((len(self._pieces), 3), stage.gap, np.float32)
         scales[:, :2] = np.concatenate([np.zeros((0, 2)), *(part.scales for part in parts)])
-        tones = [toned(colours[part.pieces], part.tone) for part in parts]
+        self._tones = np.repeat([part.tone for part in parts], [len(part.pieces) for part in parts])[:, None]
         if parts:
             self._handle.vertices, self._handle.faces = parts[0].mesh.vertices, parts[0].mesh.faces
         self._handle.batched_scales = scales
-        self._handle.batched_colors = to_linear(np.concatenate([np.zeros((0, 3), np.uint8), *tones]))
         if not parts:
             self._handle.batched_positions = np.zeros((0, 3), np.float32)
             self._handle.batched_wxyzs = np.zeros((0, 4), np.float32)
+
+    def colour(self, colours: np.ndarray) -> None:
+        """Take up colours: those of all pieces of the frame, (S, 3)."""
+        self._handle.batched_colors = to_linear(toned(colours[self._pieces], self._tones))
 
     def pose(self, poses: Poses) -> None:
         pieces = self._pieces

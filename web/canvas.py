@@ -32,6 +32,8 @@ class Canvas:
         self._stage: Stage | None = None
         self._content = -1
         self._serials = self._shape_serials = np.zeros(0, np.int64)
+        self._loose_parts: list[Loose] = []
+        self._asleep = np.zeros(0, np.bool_)
         self._grid_shown = True
 
     def draw(self, frame: Frame, stage: Stage) -> None:
@@ -42,6 +44,8 @@ class Canvas:
             self._content = -1
         if self._is_new(frame):
             self._select(frame, stage)
+        elif not np.array_equal(frame.asleep, self._asleep):
+            self._colour(frame, stage)
         poses = Poses.of(frame)
         for batch in self._batches.values():
             batch.pose(poses)
@@ -65,7 +69,6 @@ class Canvas:
 
     def _select(self, frame: Frame, stage: Stage) -> None:
         """Takes up what there is to draw. Numbers may have changed, so poses must follow at once."""
-        colours = body_colours(frame.serials, frame.body_kinds)[frame.owners]
         parts: dict[tuple[str, Layer], list[Part]] = defaultdict(list)
         loose: list[Loose] = []
         for kind, name in enumerate(SHAPE_KINDS):
@@ -80,14 +83,23 @@ class Canvas:
         for key in parts.keys() | self._batches.keys():
             if key not in self._batches:
                 self._batches[key] = Batch(self._scene, parts[key][0].mesh, key[1])
-            self._batches[key].select(parts.get(key, []), colours, stage)
-        self._select_loose(loose, colours, stage)
+            self._batches[key].select(parts.get(key, []), stage)
+        self._loose_parts = loose
+        self._colour(frame, stage)
 
-    def _select_loose(self, loose: list[Loose], colours: np.ndarray, stage: Stage) -> None:
+    def _colour(self, frame: Frame, stage: Stage) -> None:
+        """Gives all pieces their bodies' colours, which change when these fall asleep and wake."""
+        self._asleep = frame.asleep
+        colours = body_colours(frame.serials, frame.body_kinds, frame.asleep)[frame.owners]
+        for batch in self._batches.values():
+            batch.colour(colours)
+        self._select_loose(colours, stage)
+
+    def _select_loose(self, colours: np.ndarray, stage: Stage) -> None:
         """A mesh for each colour in which there are any."""
         for mesh in self._loose.values():
             mesh.clear()
-        for part in loose:
+        for part in self._loose_parts:
             own = colours[part.pieces]
             for colour in np.unique(own, axis=0):
                 key = colour.tobytes(), part.layer

@@ -1,12 +1,17 @@
-"""Frames come as fast as the simulation runs; browsers get only the latest one, at a rate that they can draw."""
+"""Frames come as fast as the simulation runs; browsers get only the latest one, at a rate that they can draw.
+
+What happened in the others is told with it.
+"""
 
 from __future__ import annotations
 
 import threading
 import time
 from collections.abc import Callable
+from dataclasses import replace
 
 from sandbox.frame import Frame
+from sandbox.gathering import Gathering
 from web.guard import log
 
 RATES = ((2_000, 60.0), (10_000, 30.0))  # up to so many pieces of bodies, so many frames a second
@@ -21,6 +26,7 @@ class Publisher:
         self._draw = draw
         self._changed = threading.Condition()
         self._frame: Frame | None = None
+        self._events = Gathering()  # also of the frames that are not drawn
         self._is_new = False
         self._closed = False
         self._complaint = ""
@@ -35,6 +41,7 @@ class Publisher:
     def put(self, frame: Frame) -> None:
         with self._changed:
             self._frame = frame
+            self._events.add(frame.events, frame.events_lost)
             self._is_new = True
             self._changed.notify()
 
@@ -57,7 +64,8 @@ class Publisher:
                 self._changed.wait_for(lambda: self._is_new or self._closed)
                 if self._closed or self._frame is None:
                     return
-                frame, self._is_new = self._frame, False
+                events, lost = self._events.take()
+                frame, self._is_new = replace(self._frame, events=events, events_lost=lost), False
             start = time.monotonic()
             self._draw_safely(frame)
             pause = start + EARLY / self._rate(frame) - time.monotonic()

@@ -20,6 +20,7 @@ from web.player import TICK, Player
 
 REFRESH_INTERVAL = 0.1  # s between two looks at what the controls show
 SLIDER_STEP = 0.01  # s
+MOST_PASSED = 8  # steps between two pictures whose events are told: more are a leap
 SETTLE_TIME = 0.4  # s after a hand left the slider, before the player moves it again
 
 
@@ -112,8 +113,11 @@ class ReplayApp:
     def _show(self, index: int) -> None:
         if index == self._shown:
             return
+        passed = range(max(self._shown + 1, index - MOST_PASSED), index)
         self._shown = index
         try:
+            for between in passed:  # not drawn, but what happened in them is told
+                self._page.publisher.put(self._frames.frame(between))
             self._frame = self._frames.frame(index)
             self._page.publisher.put(self._frame)
         except Exception as error:  # noqa: BLE001 - whatever is wrong with the file, the page stays

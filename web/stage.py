@@ -28,7 +28,8 @@ class Layer(IntEnum):
     NORMAL = 8
     IMPULSE = 9
     CONTACT = 10
-    HAND = 11
+    HIT = 11
+    HAND = 12
 
 
 @dataclass(frozen=True)
@@ -66,4 +67,10 @@ class Stage:
             for name in names.split():
                 records[name] -= y
         bounds = frame.bounds.astype(np.float64) - (x, y, x, y)
-        return replace(frame, positions=frame.positions - (x, y), bounds=bounds, contacts=contacts, joints=joints)
+        hits = frame.events.hit.copy()
+        hits["x"] -= x
+        hits["y"] -= y
+        return replace(
+            frame, positions=frame.positions - (x, y), bounds=bounds, contacts=contacts, joints=joints,
+            events=frame.events._replace(hit=hits),
+        )  # fmt: skip

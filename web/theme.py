@@ -26,6 +26,8 @@ DYNAMIC: tuple[Colour, ...] = (  # muted, of one lightness, so that no body shou
     (146, 112, 168),
     (106, 120, 186),
 )
+ASLEEP: Colour = (70, 74, 84)  # what sleeps fades towards this
+DULLNESS = 0.6  # and so far
 RIM_TONE = 0.5  # how dark a body's outline is against its face
 LINE_TONE = 1.7  # how light a line is that has no face
 BAND_TONE = 0.75  # of the band on the side where a chain is solid
@@ -35,6 +37,7 @@ NORMAL: Colour = (240, 130, 150)
 BOUNDS: Colour = (92, 128, 122)
 NORMAL_IMPULSE: Colour = (255, 196, 84)
 FRICTION_IMPULSE: Colour = (98, 218, 190)
+HIT: Colour = (255, 236, 160)
 JOINT: Colour = (196, 160, 255)
 HAND: Colour = (255, 255, 255)
 
@@ -43,17 +46,18 @@ PLOT_TEXT = "#9aa4b5"
 PLOT_GRID = "#2b313c"
 
 
-def body_colours(serials: np.ndarray, body_kinds: np.ndarray) -> np.ndarray:
-    """(N, 3) uint8, sRGB. By creation number, so that a body keeps its colour for life."""
+def body_colours(serials: np.ndarray, body_kinds: np.ndarray, asleep: np.ndarray) -> np.ndarray:
+    """(N, 3) uint8, sRGB. By creation number, so that a body keeps its colour for life; duller while it sleeps."""
     scattered = (serials.astype(np.uint64) * np.uint64(2654435769) >> np.uint64(16)) % np.uint64(len(DYNAMIC))
     colours = np.array(DYNAMIC, np.uint8)[scattered.astype(np.int64)]
     for kind, colour in (("static", STATIC), ("kinematic", KINEMATIC)):
         colours[body_kinds == BODY_KINDS.index(kind)] = colour
+    colours[asleep] = np.rint((1.0 - DULLNESS) * colours[asleep] + DULLNESS * np.array(ASLEEP))
     return colours
 
 
-def toned(colours: np.ndarray, tone: float) -> np.ndarray:
-    """Lighter or darker, (N, 3) uint8."""
+def toned(colours: np.ndarray, tone: float | np.ndarray) -> np.ndarray:
+    """Lighter or darker, (N, 3) uint8; tone: one for all, or (N, 1)."""
     return np.minimum(colours * tone, 255.0).astype(np.uint8)
 
 

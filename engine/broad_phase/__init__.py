@@ -4,7 +4,8 @@ A broad phase is an object that keeps pairs up to date:
 
 - `sync(rows, serials, groups)` when content changed: rows (S,) int64 of the shapes in the order of creation, their
   serials, and groups (S,) uint8: 0 cannot move, 1 dynamic, 2 kinematic. Only pairs with a dynamic one count.
-- `update(bounds) -> bool`: bounds (4, S) float32 in the order of `rows`; whether the pairs changed.
+- `update(bounds, ranks) -> bool`: bounds (4, S) float32 in the order of `rows`; ranks of those that may have changed,
+  None: all; whether the pairs changed.
 - `pairs` (capacity, 2) int64 of rows, of which the first `pair_count` count: the one created first comes first, and
   they ascend. It is the order in which solvers visit arbiters, and the same for every method. Every two whose bounds
   overlap are among them; more may be.

@@ -68,8 +68,8 @@ class AllPairs:
         self._ranks = np.empty((16, 2), np.int64)
         self._count = -1
 
-    def update(self, bounds: np.ndarray) -> bool:
-        """Compares all with all."""
+    def update(self, bounds: np.ndarray, ranks: np.ndarray | None = None) -> bool:
+        """Compares all with all, whatever has changed."""
         self._bounds = bounds
         ranks = np.empty_like(self._ranks)
         count = find_pairs(bounds, self._fixed, self._flags, ranks)

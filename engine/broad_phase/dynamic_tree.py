@@ -14,7 +14,15 @@ import numpy as np
 from engine.broad_phase.blocks import Blocks, fill, find_all_keys, sort_keys
 from engine.broad_phase.tree import Tree
 from engine.broad_phase.tree_build import build, fit
-from engine.broad_phase.tree_leaves import DYNAMIC_GROUP, carry_over, fatten, mark_outside, match, place
+from engine.broad_phase.tree_leaves import (
+    DYNAMIC_GROUP,
+    carry_over,
+    fatten,
+    mark_outside,
+    mark_some_outside,
+    match,
+    place,
+)
 from engine.broad_phase.tree_nodes import NODE, remove
 from engine.broad_phase.tree_pairs import find_keys, merge, renumber, write_pairs
 from engine.tables import empty
@@ -22,6 +30,8 @@ from engine.tables import empty
 REBUILD_SHARE = 0.25  # part of the leaves new or gone at once from which building anew is cheaper than one by one
 IN_PLACE_SHARE = 0.01  # part of the leaves moved at once from which they stay where they are in the tree, see `place`
 CROWD_SHARE = 0.06  # part of the leaves moved at once from which all pairs are found anew, see blocks.py
+
+NOBODY = np.empty(0, np.int64)
 
 
 class DynamicTree:
@@ -47,6 +57,7 @@ class DynamicTree:
         self._hand = empty(1, NODE)
         self._blocks: Blocks | None = None  # of all leaves; None: to be made anew
         self._changed = False
+        self._ranks: np.ndarray | None = None  # of the boxes that the last update looked at
 
     def sync(self, rows: np.ndarray, serials: np.ndarray, groups: np.ndarray) -> None:
         """Takes over which pieces there are: rows, serials (S,) int64, ascending by serial, and groups (S,) uint8.
@@ -64,6 +75,7 @@ class DynamicTree:
         self.rows, self.serials, self._groups, self._pushed = rows, serials, groups, pushed
         self._fat, self._node_of = fat, node_of
         self._flags = np.empty(len(rows), np.bool_)
+        self._ranks = None
         self._stack = np.empty((len(rows) + 2, 3), np.int64)
         for which in rebuild:
             self._build(which)
@@ -76,15 +88,23 @@ class DynamicTree:
             self.pair_count = kept
             write_pairs(self._keys, kept, rows, self.pairs)
 
-    def update(self, bounds: np.ndarray) -> bool:
+    def update(self, bounds: np.ndarray, ranks: np.ndarray | None = None) -> bool:
         """Finds the pairs for these tight boxes, (4, S) float32 in the order of `rows`. Returns whether they changed.
 
         Each pair whose tight boxes overlap, one of them dynamic, is there; so is each that has not parted yet.
+        ranks: of the boxes that may have changed since the last update, None: all.
         """
         if bounds.shape != self._fat.shape:
             raise ValueError(f"bounds of shape {bounds.shape} for {len(self.rows)} pieces")
         bounds = np.ascontiguousarray(bounds, np.float32)
-        if mark_outside(bounds, self._fat, self._flags):
+        if ranks is None:
+            outside = mark_outside(bounds, self._fat, self._flags, NOBODY)
+        else:
+            if ranks is not self._ranks:  # flags of others are those of an earlier update
+                self._flags[:] = False
+            outside = mark_some_outside(bounds, self._fat, self._flags, ranks)
+        self._ranks = ranks
+        if outside:
             moved = np.flatnonzero(self._flags)
             fatten(bounds, self._fat, self._groups, moved)
             self._follow(moved)

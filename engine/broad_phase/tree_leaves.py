@@ -59,16 +59,29 @@ def carry_over(now, old_fat, old_node_of, old_pushed, fat, node_of, nodes0, node
 
 
 @kernel
-def mark_outside(bounds, fat, flags):
+def mark_outside(bounds, fat, flags, leaves):
     """flags[i] = whether the tight box of leaf i is not inside its fat box. Returns how many are not.
 
-    bounds, fat (4, S) float32; flags (S,) bool.
+    bounds, fat (4, S) float32; flags (S,) bool; leaves: not looked at, see below.
     """
     lower_x, lower_y, upper_x, upper_y = bounds[0], bounds[1], bounds[2], bounds[3]
     left, bottom, right, top = fat[0], fat[1], fat[2], fat[3]
     count = 0
     for i in range(len(flags)):
         inside = (lower_x[i] >= left[i]) & (lower_y[i] >= bottom[i]) & (upper_x[i] <= right[i]) & (upper_y[i] <= top[i])
+        flags[i] = not inside
+        count += not inside
+    return count
+
+
+@kernel
+def mark_some_outside(bounds, fat, flags, leaves):
+    """The same for these leaves (K,) int64; the others' flags stay as they are."""
+    count = len(leaves) * 0  # a literal would be a type of its own
+    for k in range(len(leaves)):
+        i = leaves[k]
+        inside = (bounds[0, i] >= fat[0, i]) & (bounds[1, i] >= fat[1, i])
+        inside = inside & (bounds[2, i] <= fat[2, i]) & (bounds[3, i] <= fat[3, i])
         flags[i] = not inside
         count += not inside
     return count

@@ -8,15 +8,17 @@ from __future__ import annotations
 
 from engine.effects.buoyancy import BUOYANCY
 from engine.effects.contact import CONVEYOR, FRICTION, RESTITUTION, ROLLING_RESISTANCE
+from engine.effects.continuous import BULLETS, CONTINUOUS
 from engine.effects.drag import DRAG, WIND
 from engine.effects.effect import Effect, EffectStatus, Property
 from engine.effects.explosion import EXPLOSION
 from engine.effects.filters import FILTERS
-from engine.effects.joints import BREAKING, JOINT_LIMITS, JOINT_MOTORS, JOINT_SPRINGS, KINDS, PASSING
+from engine.effects.joints import BREAKING, CHAINS, JOINT_LIMITS, JOINT_MOTORS, JOINT_SPRINGS, KINDS, PASSING
 from engine.effects.magnets import MAGNETS
 from engine.effects.motion import ANGULAR_DAMPING, GRAVITY, GRAVITY_SCALE, LINEAR_DAMPING
-from engine.effects.others import DIAGNOSTICS
+from engine.effects.others import DIAGNOSTICS, EVENTS
 from engine.effects.point_gravity import POINT_GRAVITY
+from engine.effects.sleeping import SLEEPING
 
 EFFECTS: tuple[Effect, ...] = (
     GRAVITY,
@@ -38,8 +40,13 @@ EFFECTS: tuple[Effect, ...] = (
     JOINT_SPRINGS,
     JOINT_MOTORS,
     JOINT_LIMITS,
+    CHAINS,
     BREAKING,
+    CONTINUOUS,
+    BULLETS,
     PASSING,
+    EVENTS,
+    SLEEPING,
     DIAGNOSTICS,
 )
 

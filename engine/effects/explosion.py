@@ -16,6 +16,7 @@ from engine.effects.cores import write_core
 from engine.effects.effect import Effect
 from engine.jit import kernel
 from engine.shapes.placing import write_placements
+from engine.sleeping import touch_weights
 from engine.tables import HULL_POINTS, empty, placement_dtype
 from engine.vec2 import Vec2, cross, dot, rotate
 
@@ -144,6 +145,7 @@ def explode(world: World, position: Pair, radius: float, falloff: float, impulse
     if not all(np.isfinite(motions[name]).all() for name in ("vx", "vy", "w")):
         motions[:] = before
         raise validate.refuse("impulse", impulse, f"one that velocities in {world.precision} precision can hold")
+    touch_weights(state, np.flatnonzero(motions != before))
     state.explosions += 1
 
 

@@ -48,20 +48,24 @@ FILTERS = Effect(
 
 
 @kernel
-def drop_filtered(pairs, count, category, mask, group):
-    """Takes pairs of shapes that pass through each other out of the first `count`, keeping the order.
+def may_meet(row1, row2, category, mask, group):
+    """Whether two shapes do not pass through each other.
 
     Of one group: never if it is negative, always if positive. Otherwise each one's mask must hold the other's category.
     """
+    if group[row1] != 0 and group[row1] == group[row2]:
+        return group[row1] > 0
+    return (mask[row1] & category[row2]) != 0 and (mask[row2] & category[row1]) != 0
+
+
+@kernel
+def drop_filtered(pairs, count, category, mask, group):
+    """Takes pairs of shapes that pass through each other out of the first `count`, keeping the order."""
     kept = 0
     for index in range(count):
         row1 = pairs[index, 0]
         row2 = pairs[index, 1]
-        if group[row1] != 0 and group[row1] == group[row2]:
-            meets = group[row1] > 0
-        else:
-            meets = (mask[row1] & category[row2]) != 0 and (mask[row2] & category[row1]) != 0
-        if meets:
+        if may_meet(row1, row2, category, mask, group):
             pairs[kept, 0] = row1
             pairs[kept, 1] = row2
             kept += 1

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from engine import validate
+from engine.sleeping import wake_in
 from engine.vec2 import Vec2
 
 if TYPE_CHECKING:
@@ -111,6 +112,7 @@ def add_fluid(world: World, lower: Pair, upper: Pair, density: float, linear_dra
     row = storage.add()
     for name, value in values.items():
         storage.tables["fluids"][name][row] = value
+    wake_in(world._state, row)
     return Fluid(world, row, int(storage.tables["fluids"]["serial"][row]))
 
 

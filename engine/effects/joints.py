@@ -26,9 +26,9 @@ SUMMARIES = {
 }
 
 
-def joints_of(state: State) -> np.ndarray:
-    """The living joints, in the order of creation: a copy."""
-    return state.joints.tables["joints"][state.joints.order]
+def column(state: State, name: str, table: str = "joints") -> np.ndarray:
+    """A field of the living joints, in the order of creation: a copy."""
+    return state.joints.tables[table][name][state.joints.order]
 
 
 def number_of_joints(count: int, what: str) -> str:
@@ -41,7 +41,7 @@ def of_kind(kind: str) -> Callable[[State, Settings], str]:
     def because(state: State, settings: Settings) -> str:
         if not state.joints.count:
             return ""
-        count = int(np.count_nonzero(joints_of(state)["kind"] == JOINT_KINDS.index(kind)))
+        count = int(np.count_nonzero(column(state, "kind") == JOINT_KINDS.index(kind)))
         return number_of_joints(count, kind + " joint{s}")
 
     return because
@@ -53,8 +53,7 @@ def with_part(field: str, nothing: int, what: str) -> Callable[[State, Settings]
     def because(state: State, settings: Settings) -> str:
         if not state.joints.count:
             return ""
-        order = state.joints.order
-        has = [state.joints.tables[name][field][order] != nothing for name in ("turns", "slides")]
+        has = [column(state, field, name) != nothing for name in ("turns", "slides")]
         return number_of_joints(int(np.count_nonzero(has[0] | has[1])), "joint{s} with " + what)
 
     return because
@@ -62,7 +61,7 @@ def with_part(field: str, nothing: int, what: str) -> Callable[[State, Settings]
 
 def passing(state: State, settings: Settings) -> str:
     """Joints whose bodies do not collide with each other."""
-    count = int(np.count_nonzero(joints_of(state)["collide_connected"] == 0)) if state.joints.count else 0
+    count = int(np.count_nonzero(column(state, "collide_connected") == 0)) if state.joints.count else 0
     return number_of_joints(count, "joint{s} of bodies that do not collide")
 
 
@@ -70,11 +69,16 @@ def breaking(state: State, settings: Settings) -> str:
     """Joints that a force or a torque breaks."""
     if not state.joints.count:
         return ""
-    joints = joints_of(state)
-    return number_of_joints(
-        int(np.count_nonzero((joints["break_force"] >= 0.0) | (joints["break_torque"] >= 0.0))),
-        "joint{s} that may break",
-    )
+    may = (column(state, "break_force") >= 0.0) | (column(state, "break_torque") >= 0.0)
+    return number_of_joints(int(np.count_nonzero(may)), "joint{s} that may break")
+
+
+def chained(state: State, settings: Settings) -> str:
+    """Joints that would give way too far if they were visited one by one, see soft_step/direct/choose.py."""
+    if state.chains is None or not state.joints.count:
+        return ""
+    islands = state.chains.count
+    return f"{len(state.chains.plan.order)} joints in {islands} island{'s' * (islands != 1)} that would give way"
 
 
 KINDS = tuple(Effect(f"{kind} joints", SUMMARIES[kind], of_kind(kind)) for kind in JOINT_KINDS)
@@ -90,4 +94,5 @@ JOINT_LIMITS = Effect(
     needs="revolute joints",
 )  # fmt: skip
 BREAKING = Effect("breaking joints", "joints give way for good beyond a force or torque", breaking)
+CHAINS = Effect("chains", "islands of joints are solved at once", chained)
 PASSING = Effect("joined without colliding", "joined bodies pass through each other", passing)

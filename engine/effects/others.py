@@ -1,4 +1,4 @@
-"""Effects that live elsewhere in the engine: diagnostics."""
+"""Effects that live elsewhere in the engine: events, diagnostics."""
 
 from __future__ import annotations
 
@@ -17,4 +17,10 @@ def asked(state: State, settings: Settings) -> str:
     return "somebody asks for energy and momentum" if recent else ""
 
 
+def told(state: State, settings: Settings) -> str:
+    """Arrays of what happened are made where the setting says so."""
+    return "the setting tell_events" if settings.tell_events else ""
+
+
+EVENTS = Effect("events", "what begins, ends, hits and moves in a step is told", told)
 DIAGNOSTICS = Effect("diagnostics", "energy, momentum and overlap are summed up", asked)

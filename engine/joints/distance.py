@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from engine import validate
 from engine.joints.fields import Hertz, Limit, MotorSpeed, Number, limits_of, motor_of, spring_of
 from engine.joints.joint import Joint, Pair, add, anchored, checked_pair
-from engine.tables import ALONG_WAY, NO_SPRING, NOTHING, STIFF
+from engine.tables import ALONG_WAY, NO_SPRING, NOTHING
 from engine.vec2 import Vec2
 
 if TYPE_CHECKING:
@@ -41,7 +41,9 @@ class DistanceJoint(SlideMotor):
     length = Number("slides", "target", validate.non_negative, "At which the rod holds and the spring rests [m].")
     lower = Limit("slides", "lower", "Least length [m]; None: any.")
     upper = Limit("slides", "upper", "Greatest length [m]; None: any.")
-    hertz = Hertz("slides", STIFF, "Frequency of the spring [1/s]; None: no spring but a rod, or what limits leave.")
+    hertz = Hertz(
+        "slides", NO_SPRING, "Frequency of the spring [1/s]; None: no spring but a rod, or what limits leave."
+    )
     damping_ratio = Number("slides", "damping_ratio", validate.non_negative, "Of that spring: 1 is critical.")
 
     @property
@@ -81,11 +83,10 @@ def create_joint_distance(
     way = second - first
     p, numbers = self.precision, DistanceJoint
     length = float((way.x * way.x + way.y * way.y) ** 0.5) if length is None else length
-    rod = lower is None and upper is None and motor_speed is None
     slide = {
         **numbers.length.written(p, length),
         **limits_of(p, lower, upper),
-        **spring_of(p, "hertz", hertz, STIFF if rod else NO_SPRING),
+        **spring_of(p, "hertz", hertz),
         **numbers.damping_ratio.written(p, damping_ratio),
         **motor_of(p, motor_speed),
         **numbers.max_motor_force.written(p, max_motor_force),

@@ -9,7 +9,7 @@ import numpy as np
 from engine import validate
 from engine.joints.fields import Most, Number, acts, clear_idle
 from engine.solvers import SOLVERS
-from engine.tables import HELD, JOINT_KINDS, NEVER, NOTHING
+from engine.tables import ALONG_WAY, HELD, JOINT_KINDS, NEVER, NO_SPRING, NOTHING, SPRING, STIFF
 from engine.trigonometry import cos_sin
 from engine.vec2 import Vec2, unrotate
 
@@ -130,7 +130,9 @@ def structure(part: Any, table: str) -> tuple:
 
 
 def settle(part: Any, along: int) -> None:
-    """A turn or slide is there while anything acts in it."""
+    """A turn or slide is there while anything acts in it; a way without spring, limits and motor is a rod."""
+    if along == ALONG_WAY and part["spring"] != SPRING:
+        part["spring"] = NO_SPRING if part["motored"] or part["limited"] else STIFF
     part["along"] = along if acts(part) else 0
     clear_idle(part)
 
@@ -215,7 +217,7 @@ def add(
             if "max_spring" not in written:
                 part["max_spring"][row] = NEVER
             settle(part[row], kind.along if table == "slides" else 1)
-    world._content_changed()
+    world._joined(row)
     return kind(world, row, int(storage.tables["joints"]["serial"][row]))
 
 

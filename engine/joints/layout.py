@@ -43,9 +43,9 @@ class JointLayout:
     def blocks(self, name: str) -> int:
         return self.layouts[name].blocks
 
-    def arrange(self, state: State) -> None:
-        """Takes up the joints as they are, those that are solved."""
-        joints, order = state.joints.tables["joints"], state.joints.order
+    def arrange(self, state: State, order: np.ndarray) -> None:
+        """Takes up the joints in these rows as they are, those that are solved."""
+        joints = state.joints.tables["joints"]
         turns, slides = state.joints.tables["turns"], state.joints.tables["slides"]
         nobody = len(state.bodies.tables["bodies"]) - 1
         joints["body1"][-1] = joints["body2"][-1] = nobody

@@ -29,9 +29,23 @@ SEPARATION = 4  # its place in a contact's row
 
 
 @kernel
-def write_boxes(bounds, order, boxes):
-    """The bounding boxes (4, S) of the broad phase, by rank, as rows of the table of shapes."""
+def write_boxes(bounds, order, boxes, ranks):
+    """The bounding boxes (4, S) of the broad phase, by rank, as rows of the table of shapes.
+
+    ranks: not looked at, see below.
+    """
     for rank in range(len(order)):
+        box = boxes[order[rank]]
+        box.lower_x, box.lower_y, box.upper_x, box.upper_y = (
+            bounds[0, rank], bounds[1, rank], bounds[2, rank], bounds[3, rank],
+        )  # fmt: skip
+
+
+@kernel
+def write_some_boxes(bounds, order, boxes, ranks):
+    """The same for shapes of some ranks."""
+    for k in range(len(ranks)):
+        rank = ranks[k]
         box = boxes[order[rank]]
         box.lower_x, box.lower_y, box.upper_x, box.upper_y = (
             bounds[0, rank], bounds[1, rank], bounds[2, rank], bounds[3, rank],

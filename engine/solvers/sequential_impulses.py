@@ -211,6 +211,7 @@ SEQUENTIAL_IMPULSES = Solver(
         "restitution",
         "rolling resistance",
         "conveyor",
+        "bullets",
         "joint springs",
         "joint limits",
         *(f"{kind} joints" for kind in JOINT_KINDS if kind not in ("revolute", "filter")),

@@ -6,12 +6,14 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 if TYPE_CHECKING:
     from engine.settings import Settings
     from engine.state import State
 
 
-def no_chains(state: State, settings: Settings) -> None:
+def no_chains(state: State, settings: Settings, order: np.ndarray) -> None:
     """Joints are visited one by one."""
 
 
@@ -28,5 +30,5 @@ class Solver:
     has_substeps: bool = False
     speculative: bool = False  # it takes contacts before shapes touch, and kept ones
     talk_clipping: bool = False  # two boxes collide as in the talk
-    find_chains: Callable[[State, Settings], Any] = no_chains  # joints that it solves at once
+    find_chains: Callable[[State, Settings, np.ndarray], Any] = no_chains  # joints that it solves at once
     lacks: tuple[str, ...] = ()  # effects that it refuses

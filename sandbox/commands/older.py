@@ -10,6 +10,8 @@ from sandbox.commands.spawn import Spawn
 
 FIRST_SPAWN = ("shape", "x", "y", "width", "height", "mass", "friction", "count")  # what it had at first
 
+ALL_SPAWN = {field.name for field in fields(Spawn)}
+
 
 def modern(values: Mapping[str, Any]) -> Mapping[str, Any]:
     """What the same command is today; anything else as it is."""
@@ -22,7 +24,7 @@ def modern(values: Mapping[str, Any]) -> Mapping[str, Any]:
             return {"command": "set", "setting": switch, "value": on}
         case {"command": "set_solver", "solver": solver, **rest} if not rest:
             return {"command": "set", "setting": "solver", "value": solver}
-        case {"command": "spawn", **rest} if set(rest) == set(FIRST_SPAWN):
-            added = (field for field in fields(Spawn) if field.name not in FIRST_SPAWN)
+        case {"command": "spawn", **rest} if set(rest) in (set(FIRST_SPAWN), ALL_SPAWN - {"bullet"}):
+            added = (field for field in fields(Spawn) if field.name not in rest)
             return {**values, **{field.name: field.default for field in added if field.default is not MISSING}}
     return values

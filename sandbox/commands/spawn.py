@@ -51,6 +51,7 @@ class Spawn(PhysicsCommand):
     rolling_resistance: float = 0.0
     corners: int = 5
     rounding: float = 0.0
+    bullet: bool = False
     name = "spawn"
 
     def __post_init__(self) -> None:
@@ -67,6 +68,7 @@ class Spawn(PhysicsCommand):
             rolling_resistance=validate.between("rolling_resistance", self.rolling_resistance, 0.0, 1.0),
             corners=validate.whole("corners", self.corners, *CORNERS),
             rounding=validate.between("rounding", self.rounding, 0.0, SIZES[1]),
+            bullet=validate.switch("bullet", self.bullet),
             **coordinates(x=self.x, y=self.y),
         )
         if self.shape in LINES and self.kind != "static":
@@ -84,6 +86,7 @@ class Spawn(PhysicsCommand):
             friction=self.friction,
             restitution=self.restitution,
             rolling_resistance=self.rolling_resistance,
+            bullet=self.bullet,
         )
 
     def _shape(self) -> Shape:

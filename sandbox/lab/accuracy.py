@@ -43,8 +43,11 @@ class Series:
     precision: str = "single"
 
     def world(self, setting: Setting) -> World:
-        """An empty world with that setting."""
-        return World(gravity=(0.0, -10.0), solver=self.solver, precision=self.precision, **setting.world)
+        """An empty world with that setting, in which nothing sleeps: that would end an experiment."""
+        gravity = (0.0, -10.0)
+        return World(
+            gravity=gravity, solver=self.solver, precision=self.precision, sleeping=False, **setting.world
+        )  # fmt: skip
 
 
 def over(name: str, values: Sequence[int], **fixed: Any) -> tuple[Setting, ...]:

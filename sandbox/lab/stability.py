@@ -92,7 +92,7 @@ def variants_of(case: str) -> list[Variant]:
 def check(case: str, variant: Variant) -> Row:
     """Runs a case with a variant."""
     scene = find_scene(CASES[case])
-    world = scene.make(solver=variant.solver, **dict(variant.settings))
+    world = scene.make(**{"solver": variant.solver, "sleeping": False, **dict(variant.settings)})
     clock = Clock(world)
     readings = apply(scene.shows, world, variant.dt, clock.step)
     criterion, reading = worst(scene.shows, readings)

@@ -9,6 +9,9 @@ from sandbox.scenes import stacking
 from sandbox.scenes import shapes
 from sandbox.scenes import effects
 from sandbox.scenes import joints
+from sandbox.scenes import continuous
+from sandbox.scenes import events
+from sandbox.scenes import sleeping
 from sandbox.scenes import benchmark
 
 # isort: on
@@ -19,11 +22,14 @@ __all__ = [
     "Scene",
     "UnknownScene",
     "benchmark",
+    "continuous",
     "effects",
+    "events",
     "find_scene",
     "joints",
     "scene",
     "shapes",
+    "sleeping",
     "stacking",
     "the_talk",
 ]

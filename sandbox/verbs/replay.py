@@ -110,6 +110,7 @@ class RecordedFrames:
             angles=state.angles,
             velocities=state.velocities,
             angular_velocities=state.angular_velocities,
+            asleep=state.asleep,
             shape_serials=state.shape_serials,
             owners=state.owners,
             shape_kinds=state.shape_kinds,
@@ -119,6 +120,7 @@ class RecordedFrames:
             corners=state.corners,
             contacts=state.contacts,
             joints=state.joints,
+            events=state.events,
             diagnostics=Diagnostics(
                 float(numbers["kinetic_energy"]),
                 float(numbers["potential_energy"]),

@@ -54,9 +54,17 @@ def test_arbiters_live_as_long_as_their_pairs(before: set, after: set) -> None:
     kinds = np.full(len(new), -1, np.int32)
     serials = np.ascontiguousarray(shapes["serial"])
     rule = RULES.index("product")
+    motions = empty(30, motion_dtype("single"))
+    motions["still"] = 1.0
+    for k, name in enumerate(("body1", "body2")):
+        old[name][: len(old_keys)] = [owners[ROW_OF[key[k]]] for key in old_keys]
     total = follow_pairs(
-        pairs, len(pairs), serials, shapes, COLLIDER_OF, rule, old, old_points, len(old_keys), new, points, kinds
+        pairs, len(pairs), serials, shapes, COLLIDER_OF, rule, old, old_points, len(old_keys), new, points, kinds,
+        motions,
     )  # fmt: skip
+    gone = [place for place, key in enumerate(old_keys) if key not in after and touching[place] > 0]
+    parted = {int(old[f"body{number}"][place]) for place in gone for number in (1, 2)}
+    assert set(np.flatnonzero(motions["still"] == 0.0)) == parted, "what it lay on has gone: it has not been still"
     assert total == len(keys), "none for two shapes of one body"
     assert (kinds[:total] == new["collider"][:total]).all()
     for index, key in enumerate(keys):

@@ -18,11 +18,12 @@ from engine.colouring import (
     OVERFLOW,
     Layout,
     any_change,
+    any_change_among,
     colour_joints,
     count_colours,
     give_colours,
 )
-from engine.tables import arbiter_dtype, empty, motion_dtype, joint_dtype
+from engine.tables import arbiter_dtype, empty, joint_dtype, motion_dtype
 from tests.engine.worlds import DT, busy, floor, gathering, run
 
 plain_too = pytest.mark.kernel
@@ -49,8 +50,9 @@ class Contacts:
     def touch(self, touching: list[bool]) -> list[int]:
         """Lets just these touch, and gives the colours after."""
         self.rows["count"] = touching
-        give_colours(self.rows, len(self.rows), self.motions, np.full(len(self.motions), -1))
-        assert not any_change(self.rows, len(self.rows))
+        everyone = np.arange(len(self.rows))
+        give_colours(self.rows, everyone, self.motions, np.full(len(self.motions), -1))
+        assert not any_change(self.rows, len(self.rows), everyone)
         return self.colours
 
     @property
@@ -161,7 +163,10 @@ def test_any_change(states: list[tuple[int, int]]) -> None:
         rows["count"][k], rows["colour"][k] = count, colour
     for count in range(len(states) + 1):
         expected = any((touches > 0) != (colour >= 0) for touches, colour in states[:count])
-        assert bool(any_change(rows, count)) == expected
+        assert bool(any_change(rows, count, np.empty(0, np.int64))) == expected
+        some = np.arange(count % 3, count)
+        expected = any((touches > 0) != (colour >= 0) for touches, colour in states[count % 3 : count])
+        assert bool(any_change_among(rows, count, some)) == expected
 
 
 @plain_too
@@ -245,7 +250,7 @@ def check(world: World) -> None:
 
 @pytest.mark.parametrize("make", [busy, gathering])
 def test_colours_of_a_world_that_changes(make) -> None:
-    world = make("single")
+    world = make("single", sleeping=False)
     seen: dict[tuple[int, int], int] = {}
     for step in range(90):
         if step == 30:
@@ -293,7 +298,7 @@ def one_by_one(world: World) -> World:
 
 def raft() -> World:
     """Sixty small boxes on a large one that moves: more than it has colours."""
-    world = World()
+    world = World(sleeping=False)
     floor(world)
     world.create_body(Box(20, 1), position=(0, 0.499), velocity=(0.5, 0))
     for k in range(60):

@@ -99,7 +99,7 @@ def test_circle_slips_where_friction_is_too_weak_to_roll(solver: str) -> None:
 
 @either
 def test_a_stack_at_rest_carries_the_weight_above(solver: str) -> None:
-    world = World(precision="double", solver=solver)
+    world = World(precision="double", solver=solver, sleeping=False)
     if solver == "sequential_impulses":
         world.iterations = 50
     floor(world)

@@ -50,7 +50,7 @@ def test_the_solvers_numbers_are_of_the_precision() -> None:
 
 
 def test_positions_are_doubles_in_single_precision() -> None:
-    world = busy("single", gravity=(0, 0))
+    world = busy("single", gravity=(0, 0), sleeping=False)
     body = world.bodies[1]
     body.position, body.velocity = (1e6, 0.0), (0.001, 0)
     body.angular_velocity = 0.0

@@ -142,13 +142,18 @@ FAULTS = {
     "a body's column of a shape": column("shapes.linear_damping", 1.0),
     "a column of NaN": column("shapes.restitution", np.nan),
     "a column out of range": column("shapes.restitution", 1.5),
+    "a touch of a shape that is to come": put("touching", "shape2", 1, 50),
+    "a touch of a body that is not there": put("touching", "body1", 0, -1),
+    "touches in another order": lambda tables: tables.update(touching=tables["touching"][::-1].copy()),
+    "a touch of a shape with itself": put("touching", "shape2", 0, 0),
+    "touches without fields": exchange("touching", np.zeros(3)),
     "a property out of range": put_in("bodies.linear_damping", 5, -1.0),
 }
 
 
 @pytest.mark.parametrize("fault", FAULTS.values(), ids=FAULTS.keys())
 def test_what_cannot_be_is_refused_and_changes_nothing(fault: Callable[[Tables], None]) -> None:
-    good = busy_world().snapshot()
+    good = busy_world(tell_events=True).snapshot()
     tables = {name: table.copy() for name, table in good.tables.items()}
     fault(tables)
     bad = Snapshot.from_bytes(replace(good, tables=tables).to_bytes())
@@ -161,7 +166,8 @@ def test_what_cannot_be_is_refused_and_changes_nothing(fault: Callable[[Tables],
 
 
 def test_a_fault_is_what_is_refused() -> None:
-    good = busy_world().snapshot()
+    good = busy_world(tell_events=True).snapshot()
+    assert good.tables["touching"].tolist() == [(0, 2, 0, 2), (2, 3, 2, 3)]
     assert good.tables["shapes.shapes"]["kind"].tolist() == [0, 0, 0, 1, 5, 5, 4, 3, 2]
     assert good.tables["shapes.shapes"]["serial"].tolist() == [0, -1, 2, 3, 4, 5, 6, 7, 8]
     assert len(good.tables["arbiters"]) == 2

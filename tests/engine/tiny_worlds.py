@@ -151,8 +151,13 @@ SOFT_ONLY = ("lively",)
 SETTINGS: dict[str, dict[str, Any]] = {  # of some of them, with soft_step
     "boxes": {"substeps": 3, "iterations": 2},
     "circles": {"stiffness": "fixed", "substeps": 8},
-    "mixed": {"recycling": False},
-    "lively": {"restitution_mixing": "mean", "friction_mixing": "least", "restitution_threshold": 0.2},
+    "mixed": {"recycling": False, "tell_events": True, "hit_speed": 0.5},
+    "lively": {
+        "restitution_mixing": "mean",
+        "friction_mixing": "least",
+        "restitution_threshold": 0.2,
+        "tell_events": True,
+    },
 }
 
 
@@ -191,6 +196,8 @@ def digests(world: World) -> list[dict[str, str]]:
         tables = tables_of(world)
         tables["records"] = world.contact_records().tobytes() + world.joint_records().tobytes()
         tables["diagnostics"] = repr(world.diagnostics()).encode()
+        if world.tell_events:
+            tables["events"] = b"".join(rows.tobytes() for rows in world.events)
         tables["hash"] = world.state_hash().encode()
         rows.append({name: hashlib.sha256(bits).hexdigest()[:12] for name, bits in tables.items()})
     return rows

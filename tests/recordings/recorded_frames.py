@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 
 import recordings
-from engine import CONTACT_RECORD, JOINT_RECORD, SHAPE_KINDS, Diagnostics
+from engine import CONTACT_RECORD, JOINT_RECORD, SHAPE_KINDS, Diagnostics, Events
+from engine.events import NOTHING
 
 DT = 1 / 60  # [s]
 BOX, CIRCLE, CAPSULE, POLYGON, SEGMENT, CHAIN = range(6)
@@ -46,6 +47,7 @@ class Frame:
     angles: np.ndarray
     velocities: np.ndarray
     angular_velocities: np.ndarray
+    asleep: np.ndarray
     shape_serials: np.ndarray
     owners: np.ndarray
     shape_kinds: np.ndarray
@@ -60,6 +62,7 @@ class Frame:
     diagnostics: Diagnostics = DIAGNOSTICS
     stage_ms: dict[str, float] = field(default_factory=dict)
     commands: tuple[dict[str, Any], ...] = ()
+    events: Events = NOTHING
 
 
 def random_frame(rng: np.random.Generator, step: int, bodies: int = 5, contacts: int = 4, joints: int = 2) -> Frame:
@@ -76,6 +79,7 @@ def random_frame(rng: np.random.Generator, step: int, bodies: int = 5, contacts:
         angles=_any_floats(rng, (bodies,)),
         velocities=_any_floats(rng, (bodies, 2)),
         angular_velocities=_any_floats(rng, (bodies,)),
+        asleep=rng.integers(0, 2, bodies) != 0,
         shape_serials=np.sort(rng.choice(1000, pieces, replace=False)).astype(np.int64),
         owners=rng.integers(0, max(bodies, 1), pieces),
         shape_kinds=kinds,
@@ -172,6 +176,7 @@ def _falling(step: int, alive: int, place: np.ndarray, spin: np.ndarray, pieces:
         angles=angles,
         velocities=np.zeros((alive, 2)),
         angular_velocities=spin[:alive],
+        asleep=np.arange(alive) % 3 == step % 3,
         **_kept(pieces, pieces["owners"] < alive),
         contacts=contacts,
         joints=joints,

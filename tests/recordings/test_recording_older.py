@@ -88,11 +88,32 @@ def test_version_1_cut_short_gives_its_first_steps(path: Path) -> None:
     assert recording.steps.tolist() == [1, 2, 3, 4, 5]
 
 
-def test_today_is_version_2() -> None:
+def test_version_2_comes_back_without_events(tmp_path: Path) -> None:
+    # The Talk/Single Box, from step 2: gravity changed before step 4
+    path = tmp_path / "version2.rrd"
+    path.write_bytes(gzip.decompress(VERSION_1.with_name("version2.rrd.gz").read_bytes()))
+    recording = recordings.read(path)
+    assert recording.whole
+    assert (recording.schema, recording.start_step, recording.steps.tolist()) == (2, 2, [3, 4, 5, 6, 7, 8])
+    assert recording.commands == {4: [{"command": "set", "setting": "gravity", "value": [0.5, -9.0]}]}
+    assert recording.state(8).positions[1].tolist() == pytest.approx([1.82291686e-03, 3.91197915], rel=1e-8)
+    assert not any(map(len, recording.state(8).events))
+
+
+def test_today_is_version_3() -> None:
     """A change of the tables needs a version of its own, and a file of this one among the tests' data."""
-    assert schema.VERSION == 2
+    assert schema.VERSION == 3
     assert [table.path for table in schema.ON_CHANGE] == ["/state/roster", "/state/pieces", "/state/corners"]
     assert schema.ROSTER.dtype.names == ("serial", "body_kind")
+    assert {kind: table.dtype.names for kind, table in schema.HAPPENINGS.items()} == {
+        "begin": ("shape1", "shape2", "body1", "body2"),
+        "end": ("shape1", "shape2", "body1", "body2"),
+        "hit": ("shape1", "shape2", "body1", "body2", "x", "y", "nx", "ny", "speed"),
+        "moved": ("body",),
+        "fell_asleep": ("body",),
+        "woke": ("body",),
+        "broken": ("joint", "body1", "body2", "force", "torque"),
+    }
     assert schema.PIECES.dtype.names == (
         "serial", "owner", "shape_kind", "size1", "size2", "x", "y", "angle", "corner_count",
     )  # fmt: skip

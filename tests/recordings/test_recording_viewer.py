@@ -64,7 +64,7 @@ def test_timelines_cover_the_whole_recording(viewer: ViewerClient) -> None:
 
 def test_the_scene_stands_beside_the_plots(viewer: ViewerClient) -> None:
     names = {view.name for view in viewer.get_state().views}
-    assert names == {"Scene", "Commands", "Energy [J]", "Penetration [m]", "Counts", "Stage times [ms]"}
+    assert names == {"Scene", "Commands", "Events", "Energy [J]", "Penetration [m]", "Counts", "Stage times [ms]"}
 
 
 def test_bodies_are_filled_and_up_is_up(viewer: ViewerClient) -> None:

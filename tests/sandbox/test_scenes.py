@@ -17,7 +17,7 @@ from tests.engine.trajectories import Reference, load, row
 from tests.sandbox.watching import PRECISIONS
 
 TALK = "sequential_impulses"
-FOLDERS = ("The Talk", "Stacking", "Shapes", "Effects", "Joints", "Benchmark")
+FOLDERS = ("The Talk", "Stacking", "Shapes", "Effects", "Joints", "Continuous", "Events", "Sleeping", "Benchmark")
 CRITERION = Criterion("it is at", lambda world: 0.0, "m", 1.0, at_most=1.0)
 DEMOS = {
     "The Talk/Single Box": "demo1_single_box",
@@ -115,6 +115,11 @@ def test_every_effect_of_the_issue_has_a_scene() -> None:
 def test_scene_of_an_effect_calls_for_it(name: str, effect: str) -> None:
     found = {status.name: status.called_for for status in find_scene(f"Effects/{name}").make().effects}
     assert found[effect]
+
+
+def test_the_scene_of_events_calls_for_them() -> None:
+    world = find_scene("Events/Hail").make()
+    assert [status.name for status in world.effects if status.called_for] == ["gravity", "friction", "events"]
 
 
 @pytest.mark.parametrize("name", [name for name in SCENES if name.startswith("Stacking/Vertical")])

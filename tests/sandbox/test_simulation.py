@@ -124,8 +124,9 @@ def test_frames_are_read_only_copies() -> None:
         simulation.step()
     frame = simulation.frame()
     arrays = {name: value for name, value in vars(frame).items() if isinstance(value, np.ndarray)}
-    assert {"serials", "body_kinds", "positions", "angles", "velocities", "angular_velocities", "shape_serials",
-            "owners", "shape_kinds", "sizes", "places", "corner_counts", "corners", "bounds", "contacts", "joints",
+    assert {"serials", "body_kinds", "positions", "angles", "velocities", "angular_velocities", "asleep",
+            "shape_serials", "owners", "shape_kinds", "sizes", "places", "corner_counts", "corners", "bounds",
+            "contacts", "joints",
             } == set(arrays)  # fmt: skip
     kept = {name: value.tobytes() for name, value in arrays.items()}
     for value in arrays.values():

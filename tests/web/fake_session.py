@@ -61,6 +61,7 @@ def make_frame(bodies: list[BODY], corners: list[np.ndarray] | None = None, **ch
         angles=table[:, 4],
         velocities=np.zeros((count, 2)),
         angular_velocities=np.zeros(count),
+        asleep=np.zeros(count, np.bool_),
         shape_serials=np.arange(count, dtype=np.int64),
         owners=np.arange(count),
         shape_kinds=kinds,

@@ -13,7 +13,7 @@ from tests.web.fake_session import BODY, PENTAGON, make_frame
 from web.page import Page
 from web.polygons import MOST_OUTLINES
 from web.stage import Layer
-from web.theme import DYNAMIC
+from web.theme import DYNAMIC, body_colours, to_linear
 
 TURNED: BODY = ("dynamic", "box", 4.0, 1.0, 2.0, 3.0, np.pi / 2)
 DISC: BODY = ("dynamic", "circle", 0.5, 0.0, -3.0, 0.5, 0.0)
@@ -80,6 +80,29 @@ def test_shapes_are_sent_when_they_change_and_only_then(drawing: Drawing, monkey
     page._draw(make_frame([*bodies, DISC]))
     assert "batched_scales" in props(sent)
     assert len(selected) == 2
+
+
+def test_what_falls_asleep_changes_its_colour_and_nothing_else_is_sent(drawing: Drawing) -> None:
+    page, sent = drawing
+    polygons = [("dynamic", "polygon", 0.01 * k, 0.0, 3.0 * k, 0.0, 0.0) for k in range(MOST_OUTLINES + 1)]
+    for bodies in (EVERY_KIND, polygons):
+        frame = make_frame(bodies)
+        page._draw(frame)
+        sent.clear()
+        asleep = np.arange(len(bodies)) < 3
+        page._draw(replace(frame, asleep=asleep))
+        assert "batched_scales" not in props(sent)
+        assert props(sent).count("batched_colors") == (len(page.canvas._batches) if bodies is EVERY_KIND else 0)
+        duller = body_colours(frame.serials, frame.body_kinds, asleep)[:1]
+        if bodies is EVERY_KIND:
+            shown = page.canvas._batches["disc", Layer.FACE]._handle.batched_colors
+            assert shown[0].tolist() == to_linear(duller)[0].tolist()
+        else:
+            drawn = [mesh._handle for mesh in page.canvas._loose.values() if mesh._handle.visible]
+            assert any(handle.color == tuple(duller[0].tolist()) for handle in drawn)
+        sent.clear()
+        page._draw(replace(frame, asleep=asleep, step=2))
+        assert "batched_colors" not in props(sent), "once"
 
 
 def test_what_is_gone_is_no_longer_drawn(drawing: Drawing) -> None:

@@ -45,10 +45,26 @@ def test_a_far_scene_is_drawn_around_its_own_middle() -> None:
 
 def test_colours_stay_with_their_bodies_and_tell_those_apart_that_nothing_moves() -> None:
     serials, kinds = np.arange(50), np.where(np.arange(50) == 3, 0, np.where(np.arange(50) == 4, 2, 1))
-    colours = body_colours(serials, kinds)
+    asleep = np.zeros(50, np.bool_)
+    colours = body_colours(serials, kinds, asleep)
     assert len(np.unique(colours, axis=0)) == 8 + 2
-    np.testing.assert_array_equal(colours[40:], body_colours(serials[40:], kinds[40:]))
+    np.testing.assert_array_equal(colours[40:], body_colours(serials[40:], kinds[40:], asleep[40:]))
     assert to_linear(np.array([0, 128, 255])).tolist() == [0, 55, 255]
+
+
+def test_what_sleeps_is_drawn_in_a_duller_colour_of_its_own() -> None:
+    serials, kinds = np.arange(50), np.ones(50, np.int64)
+    asleep = serials % 2 == 0
+    awake, both = (body_colours(serials, kinds, who).astype(int) for who in (np.zeros(50, np.bool_), asleep))
+    np.testing.assert_array_equal(both[~asleep], awake[~asleep])
+    assert (np.ptp(both[asleep], axis=1) < 0.6 * np.ptp(awake[asleep], axis=1)).all(), "less colour"
+    assert (both[asleep].sum(axis=1) < awake[asleep].sum(axis=1)).all(), "less light"
+    assert len(np.unique(both[asleep], axis=0)) == len(np.unique(awake[asleep], axis=0)), "still told apart"
+
+
+def test_the_status_counts_who_sleeps() -> None:
+    frame = make_frame([WALL, TURNED, TURNED], asleep=np.array([False, True, True]))
+    assert '<span style="opacity:.6">asleep</span><span>2</span>' in status_html(frame, {})
 
 
 def test_the_status_tells_what_is_wrong_in_safe_text() -> None:

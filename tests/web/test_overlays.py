@@ -8,11 +8,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from engine import CONTACT_RECORD, JOINT_RECORD
+from engine import CONTACT_RECORD, HIT_EVENT, JOINT_RECORD
+from engine.events import NOTHING
 from tests.web.fake_session import BODY, make_frame
 from web import ReplayApp
 from web.overlays import OVERLAYS
 from web.overlays.bounds import Bounds
+from web.overlays.hits import CORNERS, LASTS, SMALLEST, Hits
 from web.overlays.impulses import Impulses
 from web.overlays.joints import Joints
 from web.overlays.normals import Normals
@@ -81,6 +83,44 @@ def test_bounding_boxes_are_the_broad_phases() -> None:
     assert (lines[4:, :, :2].reshape(-1, 2).min(axis=0).tolist(), lines[4:, :, 0].max()) == ([-2, -1], 0)
     overlay.draw(make_frame([TURNED, DISC]), STAGE)  # before the first step there are none
     assert len(overlay._lines.points) == 0
+
+
+def hit_frame(step: int, *hits: tuple[int, float, float, float], **changes: Any) -> Any:
+    """A frame with these hits: step, x, y, speed."""
+    rows = np.zeros(len(hits), HIT_EVENT)
+    for row, (at, x, y, speed) in zip(rows, hits, strict=True):
+        row["step"], row["x"], row["y"], row["speed"] = at, x, y, speed
+    return make_frame([], step=step, time=step / 60, events=NOTHING._replace(hit=rows), **changes)
+
+
+def test_hits_are_rings_that_shrink_for_a_second() -> None:
+    overlay = Hits(FakeScene())  # type: ignore[arg-type]
+    overlay.draw(hit_frame(100, (99, 1.0, 2.0, 4.0), (100, -3.0, 5.0, 1.0)), STAGE)
+
+    def rings() -> np.ndarray:
+        return overlay._lines.points[:, 0, :2].reshape(-1, CORNERS, 2)
+
+    def radii() -> np.ndarray:
+        return np.ptp(rings()[:, :, 0], axis=1) / 2
+
+    assert rings().mean(axis=1) == pytest.approx(np.array([(1.0, 2.0), (-3.0, 5.0)]), abs=1e-5)
+    assert radii()[0] / radii()[1] == pytest.approx(2.0, rel=0.02), "as the root of the speed"
+    first = radii()[1]
+    overlay.draw(hit_frame(159), STAGE)
+    assert len(rings()) == 2
+    overlay.draw(hit_frame(160, (160, 0.0, 0.0, 1.0)), STAGE)
+    assert len(rings()) == 2, "the first one is more than a second old"
+    assert radii()[0] / first == pytest.approx(1 - (1 - SMALLEST) * (60 / 60) / LASTS, rel=1e-3)
+    assert radii()[1] == pytest.approx(first)
+    overlay.draw(hit_frame(0), STAGE)
+    assert len(rings()) == 0, "begun again"
+    overlay.draw(hit_frame(5, (5, 0.0, 0.0, 1.0)), STAGE)
+    overlay.draw(hit_frame(6, scene="another"), STAGE)
+    assert len(rings()) == 0
+    overlay.draw(hit_frame(6, (6, 5000.0, 1.0, 1.0), scene="another"), STAGE)
+    far = Stage(5000.0, 0.0, 20.0)
+    moved = far.shifted(hit_frame(6, (6, 5000.0, 1.0, 1.0)))
+    assert moved.events.hit[["x", "y"]].tolist() == [(0.0, 1.0)]
 
 
 def test_a_recording_has_no_switch_for_what_it_does_not_hold() -> None:

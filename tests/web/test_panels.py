@@ -107,6 +107,7 @@ def test_only_what_matters_to_the_solver_is_shown(page: Page) -> None:
 def test_each_setting_matters_in_some_world() -> None:
     worlds = [
         Settings(solver="sequential_impulses"), Settings(), Settings(stiffness="fixed"), Settings(recycling=False),
+        Settings(tell_events=True),
     ]  # fmt: skip
     for info in CHANGEABLE.values():
         assert any(matters_now(info, settings) for settings in worlds), info.name

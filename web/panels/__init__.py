@@ -4,6 +4,7 @@ from web.panels.accuracy import AccuracyPanel
 from web.panels.desk import Desk, Panel
 from web.panels.drive import DrivePanel
 from web.panels.effects import EffectsPanel
+from web.panels.events import EventsPanel
 from web.panels.help import HelpPanel
 from web.panels.physics import PhysicsPanel
 from web.panels.plots import PlotsPanel
@@ -20,6 +21,7 @@ PANELS: tuple[type[Panel], ...] = (
     SpawnPanel,
     PhysicsPanel,
     EffectsPanel,
+    EventsPanel,
     AccuracyPanel,
     ViewPanel,
     PlotsPanel,

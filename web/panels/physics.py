@@ -17,15 +17,17 @@ MAIN = (
     "gravity", "solver", "substeps", "iterations", "accumulate_impulses", "warm_starting", "position_correction",
 )  # fmt: skip
 SURROUNDINGS = ("wind", "friction_mixing", "restitution_mixing")
+TELLING = ("tell_events", "hit_speed")
 NEEDS = {  # settings that another one switches off
     "contact_hertz": ("stiffness", "fixed"),
     "joint_hertz": ("stiffness", "fixed"),
     "recycling_distance": ("recycling", True),
+    "hit_speed": ("tell_events", True),
 }
 
 
 class PhysicsPanel:
-    """The main ones open; whatever else the engine has, in two folders below them."""
+    """The main ones open; whatever else the engine has, in folders below them."""
 
     def __init__(self, desk: Desk) -> None:
         self._desk = desk
@@ -35,9 +37,11 @@ class PhysicsPanel:
         with desk.gui.add_folder("Physics"):
             self._add_all(MAIN)
             with desk.gui.add_folder("Solver details", expand_by_default=False):
-                self._add_all(name for name in CHANGEABLE if name not in (*MAIN, *SURROUNDINGS))
+                self._add_all(name for name in CHANGEABLE if name not in (*MAIN, *SURROUNDINGS, *TELLING))
             with desk.gui.add_folder("Wind and materials", expand_by_default=False):
                 self._add_all(SURROUNDINGS)
+            with desk.gui.add_folder("What is told", expand_by_default=False):
+                self._add_all(TELLING)
         self._show_what_matters()
 
     def update(self, frame: Frame) -> None:

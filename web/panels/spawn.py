@@ -45,6 +45,7 @@ class SpawnPanel:
             self._angle = gui.add_slider("angle", -90, 90, 5, 0, hint="degrees, counter-clockwise")
             self._count = gui.add_slider("count", 1, 200, 1, 1)
             self._static = gui.add_checkbox("static", False, hint="never moves, whatever hits it")
+            self._bullet = gui.add_checkbox("bullet", False, hint="goes through no moving body, however fast it is")
             self._mass = gui.add_number("mass", 10.0, min=0.01, max=1e6, step=0.01, hint="kg, of each")
             with gui.add_folder("Material", expand_by_default=False):
                 self._friction = gui.add_slider("friction", 0.0, 2.0, 0.05, 0.6, hint="0 is ice, 1 is rubber")
@@ -75,6 +76,7 @@ class SpawnPanel:
             rolling_resistance=self._rolling.value,
             corners=self._corners.value,
             rounding=self._rounding.value,
+            bullet=self._bullet.value and not self._is_static(),
         )
 
     def update(self, frame: Frame) -> None:
@@ -95,4 +97,4 @@ class SpawnPanel:
         for control in (self._corners, self._rounding):
             control.visible = form.has_corners
         self._static.visible = self._shape.value not in LINES
-        self._mass.visible = not self._is_static()
+        self._mass.visible = self._bullet.visible = not self._is_static()

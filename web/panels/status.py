@@ -5,6 +5,7 @@ from __future__ import annotations
 import html
 import time
 
+import numpy as np
 import viser
 
 from sandbox.frame import Frame
@@ -82,6 +83,7 @@ def status_html(frame: Frame | None, stage_ms: dict[str, float], is_live: bool =
     ]
     content = [
         ("bodies", f"{len(frame.serials):,}"),
+        ("asleep", f"{np.count_nonzero(frame.asleep):,}"),
         ("contacts", f"{len(frame.contacts):,}"),
         ("joints", f"{len(frame.joints):,}"),
         ("deepest overlap", f"{1000.0 * numbers.max_penetration:.2f} mm"),

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from engine.atomics import new_counters
+from engine.continuous.content import content_of, stop_fast
 from engine.mixing import RULES
 from engine.program import COUNTERS, PARTS_A_THREAD, STAGE, clear_counters
 from engine.rows import wide
@@ -25,6 +26,7 @@ from engine.solvers.soft_step.joints.point import cap_dtype, point_dtype
 from engine.solvers.soft_step.joints.slide import slide_dtype
 from engine.solvers.soft_step.joints.turn import turn_dtype
 from engine.solvers.soft_step.schedule import most_stages, write_program
+from engine.solvers.soft_step.speeds import find_fast
 from engine.solvers.soft_step.work import run
 from engine.solvers.solver import Solver
 from engine.tables import empty
@@ -80,7 +82,7 @@ def make_plan(state: State, settings: Settings) -> Plan:
     p = state.precision
     pairs, layout, joint_layout, steps = state.arbiters, state.layout, state.joint_layout, state.steps
     bodies, motions = state.bodies.tables["bodies"], state.bodies.tables["motions"]
-    threads = usable(state.threads, len(state.bodies.order))
+    threads = usable(state.threads, len(state.awake_order))
     blocks = layout.blocks
     bounces = rows(state, "bounces", tables.restitution_dtype(p), blocks, "restitution")
     colours = int((np.diff(layout.firsts) > 0).sum()) + joint_layout.stages
@@ -122,13 +124,13 @@ def joint_arguments(state: State) -> tuple:
         return (None,) * (3 + 5 + 5 + 2 + 3 + 1)
 
     def rows_of(name: str, dtype: np.dtype) -> Any:
-        return rows(state, name, dtype, layout.blocks(name)) if name in layout.called_for else None
+        return rows(state, f"joints, {name}", dtype, layout.blocks(name)) if name in layout.called_for else None
 
     def free_of(name: str) -> tuple:
         blocks = layout.blocks(name)
         there = name in layout.called_for
         return tuple(
-            rows(state, f"{name}, {effect}", dtype(p), blocks, effect) if there else None
+            rows(state, f"joints, {name}, {effect}", dtype(p), blocks, effect) if there else None
             for effect, dtype in FREE.items()
         )
 
@@ -144,7 +146,7 @@ def joint_arguments(state: State) -> tuple:
 
 def solve(state: State, settings: Settings) -> None:
     """All substeps."""
-    state.follow_colours()
+    state.follow_contacts()
     plan = plan_of(state, settings)
     if plan.threads == 1:
         run(*plan.arguments)
@@ -154,20 +156,37 @@ def solve(state: State, settings: Settings) -> None:
         share(plan.threads, run, plan.threads, new_counters(3), *program)
 
 
+def hurrying(state: State) -> tuple:
+    """What `find_fast` takes."""
+    content = content_of(state)
+    slowest, fast = (None, None) if content is None else (content.slowest, content.fast)
+    return state.dynamic_lanes, state.scratch["movers"], slowest, fast, state.steps
+
+
 def update_positions(state: State, settings: Settings) -> int:
-    """Bodies go where the substeps took them."""
-    bodies, motions, order = state.bodies.tables["bodies"], state.bodies.tables["motions"], state.bodies.order
+    """Bodies go where the substeps took them, or until they would go through something."""
+    count = find_fast(*hurrying(state))
+    content = content_of(state)
+    if content is not None and count:
+        stop_fast(state, content, count)
+    bodies, motions, order = state.bodies.tables["bodies"], state.bodies.tables["motions"], state.awake_order
     moved = state.scratch["movers"]
     threads = usable(state.threads, len(order))
     if threads == 1:
-        lost = movers.finish(0, len(order), order, bodies, motions, moved)
+        ready = movers.finish(0, len(order), order, bodies, motions, moved, state.timed)
     else:
         parts = PARTS_A_THREAD * threads
         found = np.empty(parts, np.int64)
         firsts = shares(len(order), parts)
-        share(threads, movers.finish_together, new_counters(2), firsts, found, order, bodies, motions, moved)
-        lost = -1 if found.max() < 0 else found[found >= 0].min()
-    return int(order[lost]) if lost >= 0 else -1
+        share(
+            threads, movers.finish_together, new_counters(2), firsts, found, order, bodies, motions, moved,
+            state.timed,
+        )  # fmt: skip
+        ready = found.sum() if found.min() >= 0 else found[found < 0].max()  # of the lost the first
+    if ready < 0:
+        return int(order[-1 - ready])
+    state.ready[0] = ready
+    return -1
 
 
 SOFT_STEP = Solver(

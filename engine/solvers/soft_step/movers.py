@@ -13,11 +13,11 @@ import numpy as np
 from engine.atomics import count_up
 from engine.integrate import place_origin, turn
 from engine.jit import kernel
-from engine.lanes import const, eight_of
+from engine.lanes import const, eight_of, holds_somewhere, select, sqrt
 from engine.rows import at, load_row, pick, store_row
 from engine.simd import WIDTH
 from engine.threads import DONE, take_part, wait_for_all
-from engine.vec2 import Vec2, rotate
+from engine.vec2 import Vec2, dot, rotate
 
 
 class Mover(NamedTuple):
@@ -81,8 +81,19 @@ def drive(first, last, dynamic, bodies, motions, gravity, scales, drives, step):
 
 
 @kernel
+def hold_speed(v, most):
+    """A velocity, or one of the largest speed in its direction [m/s]."""
+    squared = dot(v, v)
+    above = squared > most * most
+    if holds_somewhere(above):
+        one = const(1.0, squared)
+        return v * select(above, most / sqrt(select(above, squared, one)), one)
+    return v
+
+
+@kernel
 def integrate_velocities(first, last, dynamic, drives, movers, linear, angular, step):
-    """v += what forces do, then v /= 1 + h c; the same for the angular velocity.
+    """v += what forces do, then v /= 1 + h c, up to the largest speed; the same for the angular velocity.
 
     linear, angular: None where the effect is not called for.
     """
@@ -98,7 +109,7 @@ def integrate_velocities(first, last, dynamic, drives, movers, linear, angular, 
             v = v * slower
         if angular is not None:
             w = w * (one / (one + step.h * const(pick(angular, rows), w)))
-        store(movers, rows, v, w, mover.turned)
+        store(movers, rows, hold_speed(v, step.maximum_speed), w, mover.turned)
 
 
 @kernel
@@ -127,12 +138,16 @@ def integrate_positions(first, last, moving, movers, h):
 
 
 @kernel
-def finish(first, last, order, bodies, motions, movers):
+def finish(first, last, order, bodies, motions, movers, steps):
     """Moves the bodies from `first` to before `last` to where the substeps took them; forces are used up.
 
-    Returns the rank of the first body whose state is no longer finite, -1 if there is none.
+    Returns how many have been still for long enough to sleep, or, if the state of one is no longer finite, -1 less the
+    rank of the first. steps: None where nothing sleeps.
     """
     lost = -1
+    still = first * 0  # a literal would be a type of its own
+    if steps is not None:
+        limits = limits_of(steps[0])
     for rank in range(first, last):
         row = order[rank]
         body = bodies[row]
@@ -154,16 +169,52 @@ def finish(first, last, order, bodies, motions, movers):
             finite = finite and np.isfinite(motion.vx) and np.isfinite(motion.vy) and np.isfinite(motion.w)
             if lost < 0 and not finite:
                 lost = rank
-    return lost
+            if steps is not None:
+                still += time_still(motion, mover, limits)
+    return still if lost < 0 else -1 - lost
+
+
+class Limits(NamedTuple):
+    """When a body is still, see engine/sleeping.py."""
+
+    speed: Any  # square of the speed below which it is [m^2/s^2]
+    way: Any  # square of the way that it goes in a step at that speed [m^2]
+    dt: Any  # [s]
+    enough: Any  # time after which it may sleep [s]
 
 
 @kernel
-def finish_together(leads, board, firsts, lost, order, bodies, motions, movers):
+def limits_of(step):
+    """The limits that hold for a step."""
+    speed = step.sleep_speed * step.sleep_speed
+    return Limits(speed, speed * step.dt * step.dt, step.dt, step.sleep_time)
+
+
+@kernel
+def time_still(motion, mover, limits):
+    """Times how long a body has been still. Returns whether that is long enough to sleep.
+
+    What is pushed out of another has no speed left, but goes a way. Both sides are multiplied by 1 / I, as a division
+    takes long; where nothing turns the body, w is 0.
+    """
+    mass, inertia = motion.inverse_mass, motion.inverse_inertia
+    inertia = inertia if inertia > 0 else mass
+    speed = mover.vx * mover.vx + mover.vy * mover.vy - limits.speed
+    way = mover.dx * mover.dx + mover.dy * mover.dy - limits.way
+    slow = inertia * speed + mass * (mover.w * mover.w) < 0
+    near = inertia * way + mass * (mover.turned * mover.turned) < 0
+    still = motion.still + limits.dt if slow and near else limits.dt * 0
+    motion.still = still
+    return still >= limits.enough
+
+
+@kernel
+def finish_together(leads, board, firsts, found, order, bodies, motions, movers, steps):
     """The same by several threads: part p from firsts[p] to before firsts[p + 1]."""
-    part = take_part(board, len(lost))
+    part = take_part(board, len(found))
     while part >= 0:
-        lost[part] = finish(firsts[part], firsts[part + 1], order, bodies, motions, movers)
+        found[part] = finish(firsts[part], firsts[part + 1], order, bodies, motions, movers, steps)
         count_up(board, DONE)
-        part = take_part(board, len(lost))
+        part = take_part(board, len(found))
     if leads:
-        wait_for_all(board, len(lost))
+        wait_for_all(board, len(found))

@@ -10,11 +10,11 @@ from pathlib import Path
 
 import numpy as np
 
-from engine import Box, World
+from engine import Box, RevoluteJoint, World
 from sandbox.lab.peers.protocol import CannotMirror, PeerError, bias_factor, passes, refuse_effects
 from sandbox.lab.timing import Times
 
-KNOWN = frozenset({"gravity", "friction", "revolute joints", "joined without colliding"})
+KNOWN = frozenset({"gravity", "friction", "continuous collision", "revolute joints", "joined without colliding"})
 DRIVER = Path(__file__).with_name("box2d_lite_driver.cpp")
 PARTS = ("include/box2d-lite/World.h", "src/World.cpp")  # a checkout has these
 FLAGS = ("-O3", "-DNDEBUG")  # CMake's Release, which is what its own build makes
@@ -108,6 +108,8 @@ def scene_text(world: World, dt: float) -> str:
     lines.append(_line("joints", world.joint_count))
     ranks = {body.serial: rank for rank, body in enumerate(world.bodies)}
     for joint in world.joints:
+        if not isinstance(joint, RevoluteJoint):
+            raise CannotMirror(f"it has revolute joints only, joint {joint.serial} is a {joint.kind} joint")
         if not joint.collide_connected:
             raise CannotMirror(f"its joined bodies always collide, those of joint {joint.serial} do not")
         pair = (ranks[joint.body1.serial], ranks[joint.body2.serial])

@@ -10,8 +10,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from engine import BODY_KINDS, SHAPE_KINDS, Chain, World
+from engine import BODY_KINDS, SHAPE_KINDS, Chain, RevoluteJoint, World
 from engine.effects import BODY_PROPERTIES, SHAPE_PROPERTIES
+from sandbox.lab.peers.protocol import CannotMirror
 
 BOX, CIRCLE, CAPSULE, POLYGON, SEGMENT, CHAIN = (
     SHAPE_KINDS.index(name) for name in ("box", "circle", "capsule", "polygon", "segment", "chain")
@@ -98,10 +99,12 @@ def describe_bodies(world: World) -> list[BodyDescription]:
 
 
 def describe_joints(world: World, bodies: list[BodyDescription]) -> list[JointDescription]:
-    """All joints in the order of creation."""
+    """All joints in the order of creation. CannotMirror if one is not revolute."""
     ranks = {body.serial: rank for rank, body in enumerate(bodies)}
     described = []
     for joint, record in zip(world.joints, world.joint_records(), strict=True):
+        if not isinstance(joint, RevoluteJoint):
+            raise CannotMirror(f"it has revolute joints only, joint {joint.serial} is a {joint.kind} joint")
         body1, body2 = ranks[int(record["body1"])], ranks[int(record["body2"])]
         described.append(
             JointDescription(
@@ -113,8 +116,8 @@ def describe_joints(world: World, bodies: list[BodyDescription]) -> list[JointDe
                 joint.softness,
                 joint.bias_factor,
                 joint.collide_connected,
-                getattr(joint, "motor_speed", None),
-                float(getattr(joint, "max_motor_torque", 0.0)),
+                joint.motor_speed,
+                float(joint.max_motor_torque),
             )
         )
     return described

@@ -27,6 +27,7 @@ KNOWN = frozenset(
         "rolling resistance",
         "conveyor",
         "filters",
+        "continuous collision",  # goes without
         "revolute joints",
         "joint motors",
         "joined without colliding",

@@ -28,6 +28,7 @@ KNOWN = frozenset(
         "friction",
         "restitution",
         "filters",
+        "continuous collision",  # goes without
         "revolute joints",
         "joint motors",
         "joined without colliding",

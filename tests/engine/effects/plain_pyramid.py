@@ -25,7 +25,7 @@ from engine.effects.effect import any_number, bodies_with
 from engine.state import State
 
 ROOT = str(Path(engine.__file__).parent)
-USED = ("gravity", "friction")
+USED = ("gravity", "friction", "continuous collision", "sleeping")
 BASE = 3  # boxes in the lowest row
 MORE = 10  # effects added
 WARM_UP, COUNTED = 3, 2  # steps

@@ -27,7 +27,13 @@ def because(world: World) -> dict[str, str]:
     return {status.name: status.because for status in statuses if status.called_for}
 
 
-PLAIN = {"gravity": "gravity is (0, -10) m/s²", "friction": "3 of 3 shapes have friction"}
+PLAIN = {
+    "gravity": "gravity is (0, -10) m/s²",
+    "friction": "3 of 3 shapes have friction",
+    "continuous collision": "2 bodies could go through 1 shape that nothing moves",
+    "sleeping": "what lies still may sleep: 0 of 2 bodies do",
+}
+SLEEPING = {"sleeping": PLAIN["sleeping"]}
 
 
 def join(world: World, **arguments: Any) -> None:
@@ -39,7 +45,7 @@ def set_shape(name: str, value: float) -> Callable[[World], None]:
     return lambda world: setattr(world.bodies[1].shapes[0], name, value)
 
 
-def set_body(name: str, value: float) -> Callable[[World], None]:
+def set_body(name: str, value: Any) -> Callable[[World], None]:
     return lambda world: setattr(world.bodies[1], name, value)
 
 
@@ -62,6 +68,7 @@ CALLS: dict[str, tuple[Callable[[World], None], dict[str, str]]] = {
         lambda world: join(world, collide_connected=False),
         {"revolute joints": "1 revolute joint", "joined without colliding": "1 joint of bodies that do not collide"},
     ),
+    "bullet": (set_body("bullet", True), {"bullets": "1 of 3 bodies has the property bullet"}),
     "diagnostics": (lambda world: world.diagnostics(), {"diagnostics": "somebody asks for energy and momentum"}),
 }
 
@@ -104,15 +111,30 @@ def test_it_follows_the_content() -> None:
     ball.destroy()
     assert because(world) == PLAIN
     run(world, 1)
-    assert world._state.effects == {"gravity", "friction"}
+    assert world._state.effects == {"gravity", "friction", "continuous collision", "sleeping"}
     world.gravity = (0, 0)
+    world.continuous = False
     world.bodies[0].friction = 0
-    assert because(world) == {"friction": "2 of 3 shapes have friction"}
+    assert because(world) == {"friction": "2 of 3 shapes have friction"} | SLEEPING
     for body in world.bodies:
         body.friction = 0.0
+    assert because(world) == SLEEPING
+    world.sleeping = False
     assert because(world) == {}
     run(world, 1)
     assert world._state.effects == set()
+
+
+def test_sleeping_is_called_for_by_its_setting() -> None:
+    world = three()
+    run(world, 60)
+    assert because(world)["sleeping"] == "what lies still may sleep: 2 of 2 bodies do"
+    world.bodies[2].awake = True
+    assert because(world)["sleeping"] == "what lies still may sleep: 1 of 2 bodies do"
+    world.sleeping = False
+    assert "sleeping" not in because(world)
+    world.set(sleeping=True, solver="sequential_impulses")
+    assert "sleeping" not in because(world), "this one knows no sleep"
 
 
 def test_diagnostics_are_called_for_only_while_somebody_asks() -> None:

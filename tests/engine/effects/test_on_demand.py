@@ -24,10 +24,16 @@ ELSEWHERE = {
     "restitution": ("engine.solvers.soft_step.restitution.",),
     "rolling resistance": ("engine.solvers.soft_step.rolling.",),
     "conveyor": ("engine.solvers.soft_step.friction.prepare_belts",),
-    "revolute joints": ("engine.joints.", "engine.solvers.soft_step.joints."),
-    "joint motors": ("engine.solvers.soft_step.joints.free.prepare_motors",),
+    "revolute joints": ("engine.solvers.soft_step.joints.point.", "engine.solvers.talk_joints."),
+    "prismatic joints": ("engine.solvers.soft_step.joints.line.",),
+    "distance joints": ("engine.solvers.soft_step.joints.slide.",),
+    "weld joints": ("engine.solvers.soft_step.joints.turn.",),
+    "joint springs": ("engine.solvers.soft_step.joints.free.",),
+    "chains": ("engine.solvers.soft_step.direct.",),
     "joined without colliding": ("engine.pairs.drop_joined",),
+    "events": ("engine.happened.", "engine.touching."),
     "diagnostics": ("engine.diagnostics.",),
+    "bullets": ("engine.continuous.stops.",),  # nothing there is fast, let alone a bullet
 }
 
 

@@ -97,7 +97,7 @@ def test_after_a_soft_step_both_anchors_move_as_one() -> None:
     joint = world.create_joint_revolute(a, b, anchor=(1, 0.2), collide_connected=False)
     momentum = world.diagnostics().momentum
     world.step(DT)
-    ends = [tuple(body.velocity_at(end)) for body, end in zip((a, b), joint.anchors, strict=True)]
+    ends = [tuple(body.velocity_at(joint.anchors[1])) for body in (a, b)]
     assert ends[0] == pytest.approx(ends[1], abs=1e-4)  # how far the angles within a step lag behind: angle^3 / 12
     assert tuple(world.diagnostics().momentum) == pytest.approx(tuple(momentum), rel=1e-14)
 
@@ -140,7 +140,7 @@ def hanging_on_a_spring(mass: float, k: float, d: float, **settings) -> tuple[Wo
     ("solver", "substeps"), [("soft_step", 1), ("soft_step", 4), ("soft_step", 9), ("sequential_impulses", 1)]
 )
 def test_a_spring_hangs_as_low_as_the_weight_pulls_it(solver: str, substeps: int) -> None:
-    world, joint = hanging_on_a_spring(2.0, 40.0, 12.0, solver=solver, substeps=substeps)
+    world, joint = hanging_on_a_spring(2.0, 40.0, 12.0, solver=solver, substeps=substeps, sleeping=False)
     run(world, 400)
     assert joint.body2.position.y == pytest.approx(-2.0 * 10 / 40, rel=1e-6)  # m g / k
     assert joint.impulse.y == pytest.approx(2.0 * 10 * DT, rel=1e-6)
@@ -176,7 +176,7 @@ def test_a_rigid_joint_gives_way_as_its_frequency_says(settings: dict) -> None:
     assert -2.0 - joint.body2.position.y == pytest.approx(10 / omega**2, rel=1e-3)
 
     # a plank on two pins: at its ends it gives way with 1/m_eff = 1/m + a^2/I, and each carries half of the weight
-    world = World(precision="double", **settings)
+    world = World(precision="double", joint_solving="iterated", **settings)
     plank, pins = Box(2, 0.2), [world.create_body(Circle(0.1), position=(x, 0), kind="static") for x in (-1, 1)]
     body = world.create_body(plank, mass=3)
     for pin in pins:

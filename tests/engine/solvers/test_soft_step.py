@@ -38,7 +38,7 @@ def stiffness_of_two_points(inverse_masses: float, inverse_inertias: float, half
 def test_bodies_sink_as_far_as_the_springs_give_way(settings: dict[str, Any]) -> None:
     # on the ground contacts have twice the frequency; between two boxes both turn and both move
     masses = [4.0, 1.0, 2.5]
-    world = World(precision="double", **settings)
+    world = World(precision="double", sleeping=False, **settings)
     floor(world)
     boxes = [world.create_body(Box(1, 1), position=(0, 0.5 + k), mass=mass) for k, mass in enumerate(masses)]
     run(world, 400)
@@ -99,7 +99,7 @@ def test_stiffness_says_what_holds() -> None:
 @pytest.mark.parametrize("limit", [0.5, 3.0])
 def test_overlap_is_pushed_apart_gently(substeps: int, limit: float) -> None:
     # never faster than the push-out speed, as fast at any number of substeps, and nothing is left of the push
-    world = World(precision="double", gravity=(0, 0), substeps=substeps, push_out_speed=limit)
+    world = World(precision="double", gravity=(0, 0), substeps=substeps, push_out_speed=limit, sleeping=False)
     floor(world)
     ball = world.create_body(Circle(0.5), position=(0, 0.1))
     overlaps = [0.4]

@@ -1,20 +1,19 @@
 """Which islands of joints are solved at once: those that would give way if their joints were visited one by one.
 
 A joint that carries a load F gives way by F K / w^2, K being what an impulse of 1 changes of its rate and w = 2 pi f
-its frequency (docs/soft_step.md). The loads are those of gravity, from the system that would be solved: what hangs,
-hangs on its joints, and what falls freely carries nothing. So a scene calls for it by what it is made of.
+its frequency (docs/soft_step.md). The loads are those of gravity, as if the island hung in a line from what it is
+joined to: chains.py finds them from the system that would be solved. So a scene calls for it by what it is made of.
 """
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from engine.jit import kernel
 from engine.solvers.soft_step.direct.plan import Order, least_degree
-from engine.tables import ALONG_NOTHING, DISTANCE, NOTHING, PRISMATIC, REVOLUTE, STIFF, WELD, WHEEL
+from engine.tables import DISTANCE, NOTHING, PRISMATIC, REVOLUTE, STIFF, WELD, WHEEL
 
 if TYPE_CHECKING:
     from engine.state import State
@@ -33,19 +32,21 @@ FILLING = 4
 RIGID = (REVOLUTE, DISTANCE, PRISMATIC, WELD, WHEEL)
 
 
-def rigid_joints(state: State) -> np.ndarray:
-    """Rows of the joints that hold something rigidly, whatever force it takes, in the order of creation."""
-    joints, order = state.joints.tables["joints"], state.joints.order
-    turns, slides = state.joints.tables["turns"], state.joints.tables["slides"]
-    joint, turn, slide = joints[order], turns[order], slides[order]
-    kinds = np.isin(joint["kind"], RIGID)
-    holds = (
-        (joint["held"] != NOTHING) & (joint["hertz"] == 0.0) & (joint["softness"] == 0.0) & (joint["bias_factor"] < 0.0)
+def rigid_joints(state: State, order: np.ndarray) -> np.ndarray:
+    """Those of the joints in these rows that hold something rigidly, whatever force it takes."""
+    tables = state.joints.tables
+
+    def column(table: str, name: str) -> np.ndarray:
+        return tables[table][name][order]
+
+    holds = (column("joints", "held") != NOTHING) & (column("joints", "hertz") == 0.0)
+    holds &= (column("joints", "softness") == 0.0) & (column("joints", "bias_factor") < 0.0)
+    kind = column("joints", "kind")
+    holds &= (kind != WELD) | (column("turns", "spring") == STIFF)
+    rod = (
+        (column("slides", "spring") == STIFF) & (column("slides", "motored") == 0) & (column("slides", "limited") == 0)
     )
-    rod = (slide["along"] != ALONG_NOTHING) & (slide["spring"] == STIFF)
-    rod &= (slide["motored"] == 0) & (slide["limited"] == 0)
-    turned = (turn["along"] == ALONG_NOTHING) | (turn["spring"] == STIFF) | (joint["kind"] != WELD)
-    return order[kinds & (holds & turned | rod)]
+    return order[np.isin(kind, RIGID) & (holds | rod)]
 
 
 @kernel
@@ -78,25 +79,41 @@ class Island(NamedTuple):
     hangs: bool  # whether any is joined to what does not move
 
 
-def islands_of(state: State, rows: np.ndarray) -> list[Island]:
-    """Islands of two joints or more, in the order of creation; nets, with many loops, are left out."""
+def islands_of(state: State, rows: np.ndarray, worth: bool) -> list[Island]:
+    """Islands of two joints or more, in the order of creation; nets, with many loops, are left out.
+
+    worth: those alone that are worth a look: what falls freely, and is short and of like masses, is not.
+    """
     joints, motions = state.joints.tables["joints"], state.bodies.tables["motions"]
     moves = motions["inverse_mass"] > 0.0
     root = np.empty(len(moves), np.int64)
     link(joints, rows, moves, root)
     one, other = joints["body1"][rows], joints["body2"][rows]
-    label = np.where(moves[one], root[one], root[other])
     inner = moves[one] & moves[other]
+    label = np.where(moves[one], root[one], root[other])  # of each joint
     names, places, counts = np.unique(label, return_inverse=True, return_counts=True)
-    members = np.bincount(np.searchsorted(names, root[moves & np.isin(root, names)]), minlength=len(names))
-    loops = np.bincount(places, inner, len(names)) - members + 1
-    wanted = np.flatnonzero((counts > 1) & (loops <= counts // FILLING + FILLING))
-    found = []
-    for island in sorted(wanted, key=lambda island: int(np.argmax(places == island))):
-        own = places == island
-        bodies = np.unique(np.concatenate([one[own], other[own]]))
-        found.append(Island(rows[own], bodies[moves[bodies]], not inner[own].all()))
-    return found
+    bodies = np.flatnonzero(moves & np.isin(root, names))
+    islands = np.searchsorted(names, root[bodies])  # of each body
+    loops = np.bincount(places, inner, len(names)) - np.bincount(islands, minlength=len(names)) + 1
+    hangs = np.bincount(places, ~inner, len(names)) > 0
+    wanted = (counts > 1) & (loops <= counts // FILLING + FILLING)
+    if worth:
+        mass = state.bodies.tables["bodies"]["mass"][bodies]
+        least, most = np.full(len(names), np.inf), np.zeros(len(names))
+        np.minimum.at(least, islands, mass)
+        np.maximum.at(most, islands, mass)
+        wanted &= hangs | (counts >= LONG) | (most >= HEAVY * least)
+    by_island, by_body = np.argsort(places, kind="stable"), np.argsort(islands, kind="stable")
+    ends, body_ends = np.cumsum(counts), np.cumsum(np.bincount(islands, minlength=len(names)))
+    found = [
+        Island(
+            rows[by_island[ends[k] - counts[k] : ends[k]]],
+            bodies[by_body[body_ends[k - 1] if k else 0 : body_ends[k]]],
+            bool(hangs[k]),
+        )
+        for k in np.flatnonzero(wanted)
+    ]
+    return sorted(found, key=lambda island: int(joints["serial"][island.rows[0]]))
 
 
 def order_of(state: State, island: Island) -> Order | None:
@@ -117,14 +134,3 @@ def order_of(state: State, island: Island) -> Order | None:
     for member, others in neighbours.items():
         others.discard(member)
     return least_degree(neighbours, FILLING * len(neighbours) + 2 * FILLING)
-
-
-def may_give_way(state: State, island: Island) -> bool:
-    """Whether it is worth a look: what falls freely and is short and of like masses is not."""
-    mass = state.bodies.tables["bodies"]["mass"][island.bodies]
-    return island.hangs or len(island.rows) >= LONG or float(mass.max()) >= HEAVY * float(mass.min())
-
-
-def gives_way(loads: np.ndarray, diagonals: np.ndarray, hertz: float) -> float:
-    """How far the joint that gives way most would, visited one by one [m]. loads (n, 3): force of each row."""
-    return float(np.abs(loads * diagonals).max(initial=0.0)) / (2.0 * math.pi * hertz) ** 2

@@ -81,8 +81,9 @@ def write_geometry(row, k, r1, r2, way, axis, angle, length, errors, jacobians):
     nothing = Vec2(zero, zero)
     count = 0
     if row.held == POINT:
-        write_row(jacobians, k, 0, Vec2(one, zero), -r1.y, -r2.y)
-        write_row(jacobians, k, 1, Vec2(zero, one), r1.x, r2.x)
+        arm = r1 + way  # both impulses act at body2's anchor: point.py
+        write_row(jacobians, k, 0, Vec2(one, zero), -arm.y, -r2.y)
+        write_row(jacobians, k, 1, Vec2(zero, one), arm.x, r2.x)
         errors[k, 0], errors[k, 1] = way.x, way.y
         count = 2
     elif row.held >= LINE:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from engine.constants import JOINT_DAMPING_RATIO
 from engine.jit import kernel
 from engine.solvers.soft_step.direct import rows as rigid
@@ -53,7 +55,7 @@ def solve_islands(
         elif verb in (BIASED_ROWS, RELAX_ROWS, RELAX_ROWS_LAST):
             rate = 0.0
             if verb == BIASED_ROWS:
-                rate = CORRECTION * step.inverse_h if step.position_correction != 0 else 0.0
+                rate = CORRECTION * np.float64(step.inverse_h) if step.position_correction != 0 else 0.0
             kept = 1.0 if verb == RELAX_ROWS_LAST else 0.0
             system.write_wanted(begin, end, rows, errors, jacobians, movers, rate, wanted)
             system.substitute(begin, end, columns, places, diagonals, factors, wanted)

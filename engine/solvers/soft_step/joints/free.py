@@ -63,8 +63,8 @@ def prepare_springs(first, last, slots, free, springs, step):
         s.bias_rate = select(springy, soft.bias_rate, const(step.joint_bias_rate, zero))
         s.mass_scale = select(springy, soft.mass_scale, const(step.joint_mass_scale, zero))
         s.impulse_scale = select(springy, soft.impulse_scale, const(step.joint_impulse_scale, zero))
-        s.stays = select(springy, one, zero)
         most = const(part.max_spring, zero)
+        s.stays = select(springy | (most >= zero), one, zero)  # what has a largest force is a force, and no error
         s.most = select(most >= zero, most * step.h, const(np.inf, zero))
         s.impulse = part.spring_impulse * step.carried
         s.given = zero

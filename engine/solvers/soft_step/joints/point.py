@@ -3,6 +3,9 @@
 With C the way from anchor to anchor, one pass gives the impulse -K^-1 (mass_scale (dC/dt + bias_rate C))
 - impulse_scale P, K being the 2x2 matrix that turns an impulse into a change of dC/dt; see softness.py.
 
+The impulse acts on both bodies where body2's anchor is, so that angular momentum is kept however far it has yet to come:
+dC/dt is then how C changes as body1, turning, sees it, as in line.py and slide.py.
+
 A joint with a softness of its own is that spring: softness 1/(dt (d + dt k)) and bias factor dt k/(d + dt k) give the
 stiffness k [N/m] and the damper d [N s/m], which then act in every substep: (K + 1/(h (d + h k))) P = -dC/dt -
 k/(d + h k) C - P_before/(h (d + h k)). A rigid one with a bias factor of its own loses that part of C a step. One with
@@ -32,7 +35,7 @@ def point_dtype(precision: str) -> np.dtype:
     real = REALS[precision]
     names = (
         *BODY_FIELDS,
-        "r1_x", "r1_y", "r2_x", "r2_y",  # anchors from the centres of mass, now [m]
+        "r1_x", "r1_y", "r2_x", "r2_y",  # body2's anchor from both centres of mass, now [m]
         "way_x", "way_y",  # from anchor to anchor, now [m]
         "mass_xx", "mass_xy", "mass_yy",  # inverse of K [kg]
         "give",  # softness in a substep [1/kg]
@@ -64,7 +67,7 @@ def prepare(first, last, slots, joints, bodies, motions, rows, step):
         row.given_x = const(0.0, row.give)
         row.given_y = const(0.0, row.give)
         soften(joint, row, step)
-        write_geometry(row, frame.arm1, frame.arm2, (frame.apart + frame.arm2) - frame.arm1)
+        write_geometry(row, frame.apart + frame.arm2, frame.arm2, (frame.apart + frame.arm2) - frame.arm1)
 
 
 @kernel
@@ -103,7 +106,8 @@ def soften(joint, row, step):
     row.mass_scale = select(tuned, soft.mass_scale, scale)
     scale = select(plain, zero, const(step.joint_impulse_scale, zero))
     row.impulse_scale = select(tuned, soft.impulse_scale, scale)
-    row.stays = select(springy | tuned, one, zero)
+    capped = joint.max_force >= const(0.0, joint.max_force)  # else what it gives is taken back, and it creeps there
+    row.stays = select(springy | tuned | capped, one, zero)
 
 
 @kernel
@@ -129,7 +133,7 @@ def refresh(first, last, rows, movers):
     for k in range(first, last):
         row = at(rows, k)
         now = anchors_now(row, load(movers, row.body1), load(movers, row.body2))
-        write_geometry(row, now.r1, now.r2, now.way)
+        write_geometry(row, now.r1 + now.way, now.r2, now.way)
 
 
 @kernel

@@ -1,0 +1,82 @@
+"""Continuous collision: what is fast stops at what it would go through. Each scene is lost without it."""
+
+from __future__ import annotations
+
+import math
+from itertools import pairwise
+
+import numpy as np
+
+from engine import Box, Capsule, Chain, Circle, Polygon, Segment, Shape, World
+from sandbox.scenes.criterion import Criterion
+from sandbox.scenes.registry import scene
+
+HOUSE = ((-8.0, 0.0), (8.0, 0.0), (8.0, 7.0), (0.0, 12.0), (-8.0, 7.0))
+BULLETS, BULLET_SPEED = 16, 200.0
+MIDDLE = 5.0  # height of the middle of the house [m]
+
+WALL_X, ROW = 10.0, 1.2
+SPEEDS = (30.0, 100.0, 300.0, 1000.0)
+
+
+def outside_of_house(world: World) -> float:
+    """How far the bullet furthest out is behind a wall [m]; < 0: all are inside."""
+    corners = np.array(HOUSE)
+    along = np.roll(corners, -1, axis=0) - corners
+    out = np.column_stack([along[:, 1], -along[:, 0]]) / np.hypot(along[:, 0], along[:, 1])[:, None]
+    return float(max(((place - corners) * out).sum(axis=1).max() for place in world.positions[1:]))
+
+
+@scene(
+    "Continuous/Bounce House",
+    shows=Criterion(
+        "of a bullet is out of the house at most", outside_of_house, unit="m", after=5.0, at_most=0.0, throughout=True
+    ),
+    view=(0.0, MIDDLE, 14.0),
+    gravity=(0.0, 0.0),
+)
+def bounce_house(world: World) -> None:
+    """Bullets of 200 m/s in a closed house, whose walls have no thickness: none gets out, nor through another."""
+    world.create_body(Chain(HOUSE, closed=True), kind="static", friction=0.0, restitution=1.0)
+    shapes = (Circle(0.15), Circle(0.1), Circle(0.25))
+    for k in range(BULLETS):
+        turn = 2.0 * math.pi * (k + 0.5) / BULLETS
+        out = (math.cos(turn), math.sin(turn))
+        world.create_body(
+            shapes[k % len(shapes)], position=(2.0 * out[0], MIDDLE + 2.0 * out[1]), angle=turn, friction=0.0,
+            velocity=(BULLET_SPEED * out[0], BULLET_SPEED * out[1]), restitution=1.0, bullet=True,
+        )  # fmt: skip
+
+
+@scene(
+    "Continuous/Thin Walls",
+    shows=Criterion(
+        "is how far anything is behind its wall",
+        lambda world: float((world.positions[-len(SPEEDS) * 6 :, 0]).max() - WALL_X),
+        unit="m",
+        after=3.0,
+        at_most=0.0,
+        throughout=True,
+    ),
+    view=(4.0, 7.0, 18.0),
+)
+def thin_walls(world: World) -> None:
+    """Balls, rods and boxes of 30 to 1000 m/s, some spinning at 60 rad/s, against a millimetre, a line and a chain."""
+    top = ROW * 2 * len(SPEEDS) * 1.5
+    world.create_body(Box(40, 2), position=(0, -1), kind="static")
+    world.create_body(Box(0.001, top / 3), position=(WALL_X, top / 6), kind="static")
+    world.create_body(Segment((WALL_X, top / 3), (WALL_X, 2 * top / 3)), kind="static")
+    ys = np.linspace(2 * top / 3, top, 7)
+    chain = world.create_body(kind="static")
+    chain.add_shape(Chain(tuple((WALL_X, float(y)) for y in ys)))
+    for a, b in pairwise([(WALL_X, top), (-4.0, top + 2), (-4.0, 0.0)]):
+        world.create_body(Segment(a, b), kind="static")
+    shapes: tuple[Shape, ...] = (
+        Circle(0.05), Box(1.0, 0.01), Capsule(0.8, 0.02), Box(0.4, 0.3), Circle(0.3),
+        Polygon(((-0.4, -0.1), (0.4, -0.1), (0.0, 0.2))),
+    )  # fmt: skip
+    for k, shape in enumerate(shapes):
+        for j, speed in enumerate(SPEEDS):
+            y = top * (k * len(SPEEDS) + j + 0.7) / (len(shapes) * len(SPEEDS))
+            spin = 60.0 if (k + j) % 2 else 0.0
+            world.create_body(shape, position=(-2.0 + 1.5 * (k % 2), y), velocity=(speed, 0), angular_velocity=spin)
