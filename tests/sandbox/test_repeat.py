@@ -247,6 +247,17 @@ def test_a_command_a_step_too_late_is_found(recording: Recording) -> None:
     assert difference.step == step
 
 
+def test_what_was_driven_comes_again(tmp_path: Path) -> None:
+    simulation = Simulation("Joints/Car")
+    for _ in range(20):
+        simulation.step()  # the recording begins while it drives
+    given = {5: [ask.DriveMotor(joint, 24.0) for joint in (0, 1)], 15: [ask.DriveMotor(0, 0.0)]}
+    recording = recorded_by_hand(tmp_path / "x.rrd", simulation, given, 30)
+    assert verify(recording) is None
+    assert [len(commands) for commands in recording.commands.values()] == [2, 1]
+    assert verify(replace(recording, commands={})) is not None
+
+
 def test_the_last_bit_of_the_time_step_is_found(tmp_path: Path) -> None:
     simulation = Simulation("The Talk/Dominos", precision="double")
     recording = recorded_by_hand(tmp_path / "x.rrd", simulation, {}, 5)

@@ -16,13 +16,13 @@ WHEEL, BASE = 0.5, 2.0  # radius of a wheel, and from one to the other [m]
 HERTZ, DAMPING = 4.0, 0.7  # of the suspension
 SPEED, TORQUE = 24.0, 60.0  # of each motor [rad/s], [N m]
 GRIP = 1.2  # friction of the tyres
-BODY = Polygon(((-1.5, -0.3), (1.5, -0.3), (1.5, 0.0), (0.3, 0.5), (-1.1, 0.5), (-1.5, 0.2)))
+BODY = Polygon(((-1.6, -0.15), (1.6, -0.15), (1.6, 0.1), (0.4, 0.6), (-1.1, 0.6), (-1.6, 0.3)))
 
 
 def road(x: float) -> float:
     """Its height: hills, and the ramp [m]."""
     if x >= LANDING:
-        return 0.6 * math.cos(0.4 * min(x - LANDING, LEVEL)) - 0.6
+        return 0.6 * math.cos(0.4 * min(x - LANDING, LEVEL)) - 1.2
     hills = 0.8 * math.sin(0.35 * (x - LEFT)) ** 2 * min(1.0, (x - LEFT) / 15.0)
     up = max(0.0, x - (RAMP - 5.0)) / 5.0
     return hills * max(0.0, 1.0 - 2.0 * up) + 1.3 * up * up
@@ -37,10 +37,10 @@ def stretch(first: float, last: float) -> list[Point]:
 def add_car(world: World, x: float) -> Body:
     """A chassis and two wheels."""
     ground = road(x)
-    chassis = world.create_body(BODY, position=(x, ground + 1.0), density=20.0)
+    chassis = world.create_body(BODY, position=(x, ground + 1.1), density=12.0)
     for side in (-1.0, 1.0):
         hub = (x + 0.5 * side * BASE, ground + WHEEL + 0.05)
-        wheel = world.create_body(Circle(WHEEL), position=hub, density=15.0, friction=GRIP)
+        wheel = world.create_body(Circle(WHEEL), position=hub, density=25.0, friction=GRIP)
         world.create_joint_wheel(
             chassis, wheel, anchor=hub, axis=(0.0, 1.0), hertz=HERTZ, damping_ratio=DAMPING, lower=-0.25, upper=0.25,
             motor_speed=-SPEED, max_motor_torque=TORQUE, collide_connected=False,

@@ -29,13 +29,13 @@ def tilt(world: World) -> float:
 @scene(
     "Joints/Scissor Lift",
     shows=(
-        gaps(12.0, at_most=0.01),
-        Criterion("the platform is off the level by", tilt, "rad", 12.0, at_most=0.01, throughout=True),
+        gaps(16.0, at_most=0.01),
+        Criterion("the platform is off the level by", tilt, "rad", 16.0, at_most=0.01, throughout=True),
         Criterion(
             "the platform has risen to",
             lambda world: float(world.positions[1, 1]) - 0.2,
             unit="m",
-            after=12.0,
+            after=16.0,
             at_least=0.95 * STOREYS * BAR * math.sin(UP),
             at_most=1.05 * STOREYS * BAR * math.sin(UP),
         ),
