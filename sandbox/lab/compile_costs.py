@@ -48,6 +48,9 @@ def compile_costs(snapshot: Snapshot) -> dict[str, float]:
     return {name: float(seconds) for name, seconds in json.loads(done.stdout).items()}
 
 
+NAMELESS = "<lambda>"  # many have this name: what others of them took is no measure
+
+
 def costs_here(snapshot: Snapshot) -> dict[str, float]:
     """The same, in this process, which must not have compiled any of it."""
     world = World(precision=snapshot.settings.precision)
@@ -60,6 +63,7 @@ def costs_here(snapshot: Snapshot) -> dict[str, float]:
         needed = frozenset({effect.needs} if effect.needs else ())
         times = compiled(world, snapshot, needed | {effect.name}, effect)
         base = {**before[""], **before.get(effect.needs, {})}
+        base = {name: seconds for name, seconds in base.items() if not name.endswith(NAMELESS)}
         costs[effect.name] = max(sum(seconds - base.get(name, 0.0) for name, seconds in times.items()), 0.0)
         before[effect.name] = times
     return costs
