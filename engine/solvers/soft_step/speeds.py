@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from engine.continuous.fast import NO_LIMIT
 from engine.jit import kernel
 from engine.lanes import absolute, const, eight_of, holds_somewhere
 from engine.simd import WIDTH
@@ -15,7 +16,7 @@ from engine.vec2 import dot
 def is_fast(mover, slowest):
     """Whether a body goes further than `slowest.way`; spin counts with its reach."""
     way = abs(np.float64(mover.dx)) + abs(np.float64(mover.dy)) + abs(np.float64(mover.turned)) * slowest.reach
-    return way > slowest.way
+    return slowest.way < NO_LIMIT and way > slowest.way  # nobody, who fills up lanes, has no limit, and may go anywhere
 
 
 @kernel

@@ -27,7 +27,7 @@ UPDATE = np.dtype(
         ("left", np.int64),  # block of L
         ("right", np.int64),  # block as it was before
         ("target", np.int64),  # the block that changes, or the diagonal one
-        ("diagonal", np.int64),  # 1: that of a joint
+        ("on_diagonal", np.int64),  # 1: that of a joint
     ]
 )
 COLUMN = np.dtype([("first", np.int64), ("update", np.int64)])

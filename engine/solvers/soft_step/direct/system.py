@@ -111,7 +111,7 @@ def factor(first, last, below, updates, diagonals, blocks, factors):
                 factors[n, i, 2] = x * d.xz + y * d.yz + z * d.zz
         for n in range(below[c].update, below[c + 1].update):
             update = updates[n]
-            if update.diagonal != 0:
+            if update.on_diagonal != 0:
                 eliminate_diagonal(update.left, update.right, update.target, diagonals, blocks, factors)
             else:
                 eliminate(update.left, update.right, update.target, blocks, factors)
