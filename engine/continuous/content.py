@@ -8,6 +8,7 @@ import numpy as np
 
 from engine.constants import CONTINUOUS_DEPTH, CONTINUOUS_WAY
 from engine.continuous.fast import SLOWEST, measure_bodies
+from engine.continuous.joined import rigid_pairs, stop_joined
 from engine.continuous.stops import (
     ENCOUNTER,
     find_contacts_anew,
@@ -44,6 +45,7 @@ class Content(NamedTuple):
         np.ndarray
     )  # (B, 2) int64: which two shapes overlapped already and keep it from going on; -1 outside of a sweep
     carriers: np.ndarray  # (B,) int64: the kinematic body that carries it on; -1
+    joined: np.ndarray  # (J, 2) int64: rows of bodies that stop together
     filters: tuple[Any, Any, Any, Any]  # joined, category, mask, group: of length 0 where not called for
 
 
@@ -80,6 +82,7 @@ def read_content(state: State) -> Content:
         np.flatnonzero(state.groups == STATIC_GROUP), np.flatnonzero(state.groups == KINEMATIC_GROUP),
         order[state.groups == DYNAMIC_GROUP], np.ones(len(bodies)), np.full((len(bodies), 2), -1),
         np.full(len(bodies), -1),
+        rigid_pairs(state),
         (joined, category, mask, group),
     )  # fmt: skip
 
@@ -121,6 +124,9 @@ def stop_fast(state: State, content: Content, count: int) -> None:
         met = np.concatenate([shapes["body"][pairs["shape1"]], shapes["body"][pairs["shape2"]]])
         stopping = np.concatenate([fast, np.setdiff1d(met, fast)])
     part_sunk(stopping, *things, state.bodies.tables["motions"], c.until, c.sunk, scratch)
+    if len(c.joined) and c.until.min() < 1.0:
+        stop_joined(c.joined, c.until)
+        stopping = np.union1d(stopping, np.flatnonzero(c.until < 1.0))
     find_contacts_anew(state.arbiters.rows, state.arbiters.count, c.until)
     hold_back(stopping, bodies, moved, c.until, c.carriers)
     c.carriers[fast] = -1

@@ -12,7 +12,7 @@ from engine.solvers.soft_step.direct import choose, system
 from engine.solvers.soft_step.direct.plan import Order, Plan, make_plan
 from engine.solvers.soft_step.direct.rows import direct_dtype
 from engine.solvers.soft_step.tables import mover_dtype
-from engine.tables import empty
+from engine.tables import DYNAMIC, LINE, POINT, STIFF, empty
 
 if TYPE_CHECKING:
     from engine.settings import Settings
@@ -90,4 +90,25 @@ def _stretch(state: State, settings: Settings, island: Island, order: Order, her
     system.factor(0, last, p.columns, p.updates, c.diagonals, c.blocks, c.factors)
     system.write_wanted(0, last, c.rows, c.errors, c.jacobians, falling, 0.0, c.wanted)
     system.substitute(0, last, p.columns, p.places, c.diagonals, c.factors, c.wanted)
-    return float(np.abs(c.wanted[:, 0] * gives).max()) / (2.0 * math.pi * hertz) ** 2
+    loads = np.abs(c.wanted[:, 0])  # [N]
+    give = loads * gives
+    turns = joints["held"][p.order] == LINE
+    turns |= (joints["held"][p.order] == POINT) & (state.joints.tables["turns"]["spring"][p.order] == STIFF)
+    if turns.any():  # a beam gives way by angles, and its end by their sum
+        reach = _reach(state, p.order)
+        inverse_inertia = state.bodies.tables["motions"]["inverse_inertia"].astype(np.float64)
+        easy = inverse_inertia[joints["body1"][p.order]] + inverse_inertia[joints["body2"][p.order]]
+        give += np.where(turns, loads * reach * easy * reach, 0.0)
+    return float(give.max()) / (2.0 * math.pi * hertz) ** 2
+
+
+def _reach(state: State, rows: np.ndarray) -> float:
+    """How far an island would reach in a line: the ways from centres of mass to anchors, summed up [m]."""
+    joints, bodies = state.joints.tables["joints"], state.bodies.tables["bodies"]
+    total = 0.0
+    for number in "12":
+        owners = joints[f"body{number}"][rows]
+        x = joints[f"anchor{number}_x"][rows] - bodies["local_x"][owners]
+        y = joints[f"anchor{number}_y"][rows] - bodies["local_y"][owners]
+        total += float(np.where(bodies["kind"][owners] == DYNAMIC, np.hypot(x, y), 0.0).sum())
+    return total

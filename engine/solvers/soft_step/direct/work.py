@@ -6,7 +6,6 @@ import math
 
 import numpy as np
 
-from engine.constants import JOINT_DAMPING_RATIO
 from engine.jit import kernel
 from engine.solvers.soft_step.direct import rows as rigid
 from engine.solvers.soft_step.direct import system
@@ -19,14 +18,18 @@ from engine.solvers.soft_step.schedule import (
     STORE_ROWS,
 )  # fmt: skip
 
-STIFFNESS = 10.0 * math.pi
-"""w h, w being the frequency of a joint that is solved at once and h a substep: twenty times that of one that is
+STIFFNESS = 8.0 * math.pi
+"""w h, w being the frequency of a joint that is solved at once and h a substep: sixteen times that of one that is
 visited. Larger: a taut line of planks, which is held by the smallest sag, shakes; smaller: chains stretch."""
 
-CORRECTION = STIFFNESS / (2.0 * JOINT_DAMPING_RATIO + STIFFNESS)
+DAMPING_RATIO = 40.0
+"""Far beyond critical, so that what a taut line is thrown into dies out. Smaller: a bridge of 160 planks shakes by 20
+mm; larger: errors of what swings fast go away slowly."""
+
+CORRECTION = STIFFNESS / (2.0 * DAMPING_RATIO + STIFFNESS)
 """Part of a joint's error that a substep removes; see engine/softness.py, as for the next."""
 
-GIVE = 1.0 / (STIFFNESS * (2.0 * JOINT_DAMPING_RATIO + STIFFNESS))
+GIVE = 1.0 / (STIFFNESS * (2.0 * DAMPING_RATIO + STIFFNESS))
 """How far a row gives way, as a part of its own diagonal: with it a loop that holds the same thing twice, such as a
 ring of welds, can be solved."""
 
