@@ -42,6 +42,7 @@ def list_all(state: State) -> None:
         state.lists_are_stale = asleep is not None
     state.colours_are_stale = True
     state.solve_plan = None
+    state.addresses = {}  # a kernel that is handed other tables is another one
 
 
 def acting_rows(state: State, asleep: np.ndarray) -> np.ndarray:
