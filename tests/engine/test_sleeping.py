@@ -228,7 +228,7 @@ def test_a_step_walks_along_nothing_that_sleeps() -> None:
     run(world, 120)
     state = world._state
     assert state.dormant
-    assert state.joint_layout.blocks == 0
+    assert state.joint_layout.stages == 0
     ball = world.create_body(Circle(0.5), position=(10, 0.5))
     run(world, 3)
     assert not state.dormant

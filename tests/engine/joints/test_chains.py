@@ -83,10 +83,10 @@ def test_a_chain_with_a_thousand_times_a_links_mass_at_its_end(capsys: pytest.Ca
 
 
 def test_a_bridge_of_160(capsys: pytest.CaptureFixture) -> None:
-    found = worst(bridge(), 600, since=480)
+    found = worst(bridge(), 600, since=480, every=1)
     with capsys.disabled():
-        print(f"\nbridge of 160 planks: {1e3 * found:.3f} mm")
-    assert found < 4e-3  # it still shakes by its planks' own weight, taut as it is
+        print(f"\nbridge of 160 planks: {1e3 * found:.3f} mm in the last two of ten seconds")
+    assert found < 2e-3
 
 
 def test_ball_and_chain(capsys: pytest.CaptureFixture) -> None:
@@ -133,7 +133,7 @@ def random_joints(seed: int, loops: int = 0, bodies: int = 9, precision: str = "
 def test_blocks_solve_what_the_dense_matrix_solves(loops: int, seed: int) -> None:
     world = random_joints(seed, loops)
     world._state.steps["dt"] = DT
-    chains = find_chains(world._state, world.settings)
+    chains = find_chains(world._state, world.settings, world._state.joints.order)
     if chains is None:
         assert world._state.joints.count < 2
         return
@@ -151,7 +151,7 @@ def test_blocks_solve_what_the_dense_matrix_solves(loops: int, seed: int) -> Non
 def test_jacobians_are_how_errors_change(seed: int) -> None:
     world = random_joints(seed)
     world._state.steps["dt"] = DT
-    chains = find_chains(world._state, world.settings)
+    chains = find_chains(world._state, world.settings, world._state.joints.order)
     assert chains is not None
     expected = naive.jacobian_by_differences(world, chains)
     rows_of = {int(row): k for k, row in enumerate(world._state.bodies.order)}
@@ -316,8 +316,8 @@ def test_a_tree_that_falls_freely_holds_together(solving: str) -> None:
 
 
 def test_every_joint_of_a_hanging_chain_tells_the_weight_below() -> None:
-    world = all_joints(chain(1000.0, 20, precision="double"))
-    run(world, 300)
+    world = all_joints(chain(1000.0, 20, precision="double", sleeping=False))
+    run(world, 1200)
     masses = [body.mass for body in world.bodies[1:]]
     for k, joint in enumerate(world.joints):
         assert joint.force.y == pytest.approx(GRAVITY * sum(masses[k:]), rel=1e-6)

@@ -76,7 +76,7 @@ def _stretch(state: State, settings: Settings, island: Island, order: Order, her
     joints, bodies = state.joints.tables["joints"], state.bodies.tables["bodies"]
     inverse_mass = state.bodies.tables["motions"]["inverse_mass"].astype(np.float64)
     if not island.hangs:
-        inverse_mass[island.bodies[int(np.argmax(bodies["mass"][island.bodies]))]] = 0.0
+        inverse_mass[island.bodies[int(np.argmin(bodies["mass"][island.bodies]))]] = 0.0
     c, p, last = chains, chains.plan, len(chains.plan.order)
     for number in "12":
         rows = joints[f"body{number}"][p.order]

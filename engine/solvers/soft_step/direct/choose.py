@@ -23,7 +23,7 @@ MOST_STRETCH = 1e-3
 and carts pay for what nobody sees."""
 
 LONG, HEAVY = 16, 30.0
-"""An island that hangs on nothing is looked at, as if it hung on its heaviest body, if it has so many joints, or bodies
+"""An island that hangs on nothing is looked at, as if it hung on its lightest body, if it has so many joints, or bodies
 of such different mass."""
 
 FILLING = 4
