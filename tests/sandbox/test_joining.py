@@ -145,6 +145,7 @@ def test_what_cannot_be_done_changes_nothing(command: Join, reason: str) -> None
     with pytest.raises(ValueError, match=f"^{reason}"):
         simulation.apply(command)
     assert simulation.content == untouched.content
+    assert simulation.world.body_count == 1, "no anchor is left"
     for each in (simulation, untouched):
         joined(each, Join("revolute", 0, 0.0, 0.0, POINT, 0.0, 8.0))
         each.step()
