@@ -21,6 +21,7 @@ from sandbox.scenes import Scene, find_scene
 
 TIME_STEP = 1.0 / 60.0  # [s]
 MOST_BODIES = 25_000  # that commands may fill a world with
+MOST_JOINTS = 25_000
 
 
 class Simulation:
@@ -100,6 +101,19 @@ class Simulation:
         """How far each of the scene's drives is on, by its first motor."""
         motors = ((drive.gain, self._motor(drive.joints[0])) for drive in self.scene.drives)
         return tuple(motor.motor_speed / gain if motor is not None else 0.0 for gain, motor in motors)
+
+    def room_for_joint(self) -> None:
+        """Refuses more joints than the sandbox is made for."""
+        if self.world.joint_count >= MOST_JOINTS:
+            raise ValueError(f"joints = {self.world.joint_count + 1}: must be at most {MOST_JOINTS} in a scene")
+
+    def anchor_body(self) -> Body:
+        """What holds the points to which bodies are joined: the first static body, one without a shape if none."""
+        anchor = next((body for body in self.world.bodies if body.kind == "static"), None)
+        if anchor is None:
+            self.make_room(1)
+            anchor = self.world.create_body(kind="static")
+        return anchor
 
     def body_of(self, hand: Hand) -> Body | None:
         """What a hand holds, None if that was destroyed or cannot be moved."""

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from sandbox.frame import Frame
 from sandbox.scenes import SCENES
 from web.page import Page
-from web.panels import PANELS, Desk, SpawnPanel
+from web.panels import PANELS, Desk, JointsPanel, SpawnPanel
 from web.panels.effects import Measure
 from web.pointer import Pointer
 
@@ -39,7 +39,8 @@ class App:
         desk = Desk(self._page, session, measure_effects)
         panels = [kind(desk) for kind in PANELS]
         spawn = next(panel for panel in panels if isinstance(panel, SpawnPanel))
-        pointer = Pointer(desk, self._page, spawn)
+        joints = next(panel for panel in panels if isinstance(panel, JointsPanel))
+        pointer = Pointer(desk, self._page, spawn, joints)
         self._page.listeners += [panel.update for panel in panels]
         self._page.listeners.append(pointer.update)
         session.add_viewer(self)  # which shows us the latest frame

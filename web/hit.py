@@ -19,6 +19,14 @@ def body_at(frame: Frame, x: float, y: float) -> int | None:
     return int(hits.max()) if len(hits) else None
 
 
+def solid_at(frame: Frame, x: float, y: float) -> int | None:
+    """The same for bodies of all kinds, dynamic ones first."""
+    owners = frame.owners[pieces_at(frame, x, y)]
+    if not len(owners):
+        return None
+    return int(max(owners, key=lambda owner: (frame.body_kinds[owner] == DYNAMIC_BODY, owner)))
+
+
 def pieces_at(frame: Frame, x: float, y: float) -> np.ndarray:
     """(S,) which pieces cover this point of the world. Segments and chains have no area, and cover none."""
     local = _in_pieces(frame, x, y)

@@ -1,6 +1,7 @@
 """The mouse in the view: a click drops bodies where there is room, a drag takes hold of a body and pulls it softly.
 
-An invisible plane catches both; it lies exactly at z = 0, so that what it reports are world coordinates.
+While a client has the tool for joints, that gets the clicks instead. An invisible plane catches both; it lies exactly
+at z = 0, so that what it reports are world coordinates.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ from web.hit import body_at, in_body, in_world
 from web.overlays.overlay import add_lines, lines
 from web.page import Page
 from web.panels.desk import Desk
+from web.panels.joints import JointsPanel
 from web.panels.spawn import SpawnPanel
 from web.parts import square_corners
 from web.stage import Layer
@@ -39,10 +41,11 @@ class Hand:
 class Pointer:
     """Turns what the mouse does into commands. The hand of a client is its id, so each pulls its own body."""
 
-    def __init__(self, desk: Desk, page: Page, spawn: SpawnPanel) -> None:
+    def __init__(self, desk: Desk, page: Page, spawn: SpawnPanel, joints: JointsPanel) -> None:
         self._desk = desk
         self._page = page
         self._spawn = spawn
+        self._joints = joints
         self._hands: dict[int, Hand | None] = {}
         self._pulls = add_lines(page.server.scene, "/hands", HAND, thickness=2.5)
         plane = _add_pick_plane(page.server.scene)
@@ -57,6 +60,8 @@ class Pointer:
         x, y = self._to_world(
             event.ray_origin[0] + reach * event.ray_direction[0], event.ray_origin[1] + reach * event.ray_direction[1]
         )
+        if self._joints.clicked(event.client_id, x, y):
+            return
         frame = self._page.publisher.frame
         if frame is not None and body_at(frame, x, y) is None:
             self._desk.submit(lambda: self._spawn.command(x, y))

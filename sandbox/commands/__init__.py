@@ -16,6 +16,7 @@ from sandbox.commands.base import REACH, Command, PhysicsCommand
 from sandbox.commands.bomb import Bomb
 from sandbox.commands.dragging import HANDS, Grab, MoveHand, Release
 from sandbox.commands.driving import DriveMotor
+from sandbox.commands.joints import JOINS, LIMITED, POINT, Join, Unjoin, strength_of
 from sandbox.commands.older import modern
 from sandbox.commands.session import (
     SPEEDS,
@@ -34,9 +35,12 @@ from sandbox.commands.spawn import CORNERS, KINDS, LINES, SIZES, Spawn
 __all__ = [
     "CORNERS",
     "HANDS",
+    "JOINS",
     "KINDS",
+    "LIMITED",
     "LINES",
     "PHYSICS",
+    "POINT",
     "REACH",
     "SIZES",
     "SPEEDS",
@@ -44,6 +48,7 @@ __all__ = [
     "Command",
     "DriveMotor",
     "Grab",
+    "Join",
     "LoadScene",
     "MoveHand",
     "Pause",
@@ -57,11 +62,13 @@ __all__ = [
     "StartRecording",
     "StepOnce",
     "StopRecording",
+    "Unjoin",
     "command_from_dict",
     "modern",
+    "strength_of",
 ]
 
-PHYSICS = {kind.name: kind for kind in (Set, Spawn, Bomb, Grab, MoveHand, Release, DriveMotor)}
+PHYSICS = {kind.name: kind for kind in (Set, Spawn, Bomb, Grab, MoveHand, Release, DriveMotor, Join, Unjoin)}
 
 
 def command_from_dict(values: Mapping[str, Any]) -> PhysicsCommand:

@@ -6,6 +6,7 @@ from web.panels.drive import DrivePanel
 from web.panels.effects import EffectsPanel
 from web.panels.events import EventsPanel
 from web.panels.help import HelpPanel
+from web.panels.joints import JointsPanel
 from web.panels.physics import PhysicsPanel
 from web.panels.plots import PlotsPanel
 from web.panels.recording import RecordingPanel
@@ -19,6 +20,7 @@ PANELS: tuple[type[Panel], ...] = (
     SimulationPanel,
     DrivePanel,
     SpawnPanel,
+    JointsPanel,
     PhysicsPanel,
     EffectsPanel,
     EventsPanel,
@@ -29,4 +31,4 @@ PANELS: tuple[type[Panel], ...] = (
     RecordingPanel,
 )
 
-__all__ = ["PANELS", "Desk", "Panel", "SpawnPanel"]
+__all__ = ["PANELS", "Desk", "JointsPanel", "Panel", "SpawnPanel"]

@@ -16,6 +16,7 @@ KEYS = (
     ("S or .", "one step"),
     ("R", "reset"),
     ("B", "bomb"),
+    ("Esc", "puts the joint tool away"),
     ("arrows", "drive"),
     ("F", "frame the scene"),
     ("Ctrl K", "all commands"),
