@@ -194,6 +194,7 @@ DROPS = np.linspace(4.0, 5.0, COPIES)  # all different: a ball may hit at any mo
 
 
 def build_bounce(world: World) -> Watch:
+    world.continuous = False  # what stops at its impact loses the rest of that step, however short substeps are
     add_floor(world)
     for (x, y), height in zip(places(), DROPS, strict=True):
         world.create_body(Circle(BALL), position=(x, y + height + BALL), restitution=RESTITUTION)

@@ -26,6 +26,7 @@ CHANGES: dict[str, Any] = {
     "push_out_speed": 0.5,
     "joint_hertz": 11.0,
     "joint_damping_ratio": 0.5,
+    "joint_solving": "direct",
     "restitution_threshold": 0.25,
     "speculative_distance": 0.0,
     "recycling": False,

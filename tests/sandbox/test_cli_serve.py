@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 import recordings
-from engine import World
+from engine import Events, World
 from sandbox import cli
 from sandbox import commands as ask
 from sandbox.recorder import PartFile
@@ -196,7 +196,9 @@ def test_replayed_frames_are_the_recorded_ones(tmp_path: Path) -> None:
         for name, value in vars(frame).items():
             if name in ("stage_ms", "content", "bounds", "effects"):
                 continue  # a recording does not hold them
-            if isinstance(value, np.ndarray):
+            if isinstance(value, Events):
+                assert [rows.tobytes() for rows in found.events] == [rows.tobytes() for rows in value]
+            elif isinstance(value, np.ndarray):
                 assert getattr(found, name).tobytes() == value.tobytes(), name
             else:
                 assert getattr(found, name) == value, name

@@ -119,7 +119,9 @@ def test_scene_of_an_effect_calls_for_it(name: str, effect: str) -> None:
 
 def test_the_scene_of_events_calls_for_them() -> None:
     world = find_scene("Events/Hail").make()
-    assert [status.name for status in world.effects if status.called_for] == ["gravity", "friction", "events"]
+    assert [status.name for status in world.effects if status.called_for] == [
+        "gravity", "friction", "continuous collision", "events", "sleeping",
+    ]  # fmt: skip
 
 
 @pytest.mark.parametrize("name", [name for name in SCENES if name.startswith("Stacking/Vertical")])

@@ -92,7 +92,8 @@ def test_what_falls_asleep_changes_its_colour_and_nothing_else_is_sent(drawing: 
         asleep = np.arange(len(bodies)) < 3
         page._draw(replace(frame, asleep=asleep))
         assert "batched_scales" not in props(sent)
-        assert props(sent).count("batched_colors") == (len(page.canvas._batches) if bodies is EVERY_KIND else 0)
+        told = props(sent).count("batched_colors")
+        assert 0 < told <= len(page.canvas._batches) if bodies is EVERY_KIND else told == 0
         duller = body_colours(frame.serials, frame.body_kinds, asleep)[:1]
         if bodies is EVERY_KIND:
             shown = page.canvas._batches["disc", Layer.FACE]._handle.batched_colors

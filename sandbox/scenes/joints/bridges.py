@@ -71,7 +71,7 @@ def bridge(world: World) -> None:
 
 SEED = 20261122
 SHORT, GORGE, DEPTH = 30, 24.0, 9.0  # planks, width and depth of what it spans [m]
-WEAKEST, STRONGEST = 8e3, 24e3  # of its joints [N]: the planks alone pull with 1200
+WEAKEST, STRONGEST = 12e3, 24e3  # of its joints [N]: the planks alone pull with 1200
 STONES = ((0.6, -12.9), (0.8, 14.4), (1.0, -15.6), (1.2, 16.5))
 """Radii of what rolls onto it, one after another, and where they begin [m]."""
 

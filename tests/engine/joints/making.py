@@ -20,7 +20,7 @@ GRAVITY = 10.0
 
 def world_of_joints(**settings: Any) -> World:
     """A world in double precision, unless it is said otherwise, with the code of all joints."""
-    return all_joints(World(**{"precision": "double", **settings}))
+    return all_joints(World(**{"precision": "double", "sleeping": False, **settings}))
 
 
 def all_joints(world: World) -> World:

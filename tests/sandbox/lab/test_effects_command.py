@@ -39,13 +39,18 @@ def test_a_short_list_on_and_a_long_list_off(tumble: Tumble, measured: list[Worl
     code, out, err = tumble("effects", "The Talk/Pyramid")
     assert code == 0
     on, off, summary = out.split("\n\n")
-    assert [line.split("  ")[0] for line in on.splitlines()[2:]] == ["gravity", "friction", "sleeping"]
+    assert [line.split("  ")[0] for line in on.splitlines()[2:]] == [
+        "gravity",
+        "friction",
+        "continuous collision",
+        "sleeping",
+    ]
     assert "0 of 78 bodies do" in on, "a world that sleeps would tell nothing"
     assert "79 of 79 shapes have friction" in on
     assert on.splitlines()[2].split()[-3:] == ["±", "1.5", "0.25"], "1 us is less than what chance may do"
     assert on.splitlines()[3].split()[-2:] == [f"{1 + NAMES.index('friction')}.0", "0.25"]
     assert [line.split("  ")[0] for line in off.splitlines()[2:]] == [
-        n for n in NAMES if n not in ("gravity", "friction", "sleeping")
+        n for n in NAMES if n not in ("gravity", "friction", "continuous collision", "sleeping")
     ]
     assert summary.startswith(f"The Talk/Pyramid, 79 bodies, 123 us a step. It calls for 3 of {len(NAMES)} effects;")
     assert "compiling the engine from nothing" in err
@@ -67,6 +72,7 @@ def test_json(tumble: Tumble, measured: list[World], tmp_path: Path) -> None:
         "gravity",
         "friction",
         "revolute joints",
+        "continuous collision",
         "sleeping",
     ]
     assert all(bool(row["because"]) == row["called_for"] for row in rows)
