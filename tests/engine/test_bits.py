@@ -21,7 +21,7 @@ ROOT = Path(engine.__file__).parents[1]
 PATTERNS = {
     "engine.solvers.sequential_impulses.solve_all": 2,  # with joints and without
     "engine.integrate.apply_forces": 3,  # gravity; with its scale and both kinds of damping; nothing
-    "engine.solvers.soft_step.work.run": 7,  # these three, joints, all joints, sleepers, and what the talk's solver lacks
+    "engine.solvers.soft_step.work.run": 7,  # these three, joints, all, sleepers, and what the talk's solver lacks
 }
 
 
