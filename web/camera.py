@@ -16,7 +16,7 @@ from web.stage import Stage
 
 FIELD_OF_VIEW = 0.1  # rad, vertical
 LEAST_ASPECT = 1.5  # a scene's view is as wide as this times its height; narrower windows look from further away
-HUD_SHARE = 0.21  # of the picture's height, at the top: the window there lies over sky, and the scene's view below it
+HUD_SHARE = 0.22  # of the picture's height, at the top: the window there lies over sky, and the scene's view below it
 TILT = 1e-3  # as a share of the distance: less is rounding
 SETTLE_TIME = 1.5  # s in which a client's camera may still report where it was before it was told where to be
 NEAREST, FURTHEST = 0.03, 12.0  # how far one may zoom, relative to the scene's own distance

@@ -52,7 +52,7 @@ def test_a_short_list_on_and_a_long_list_off(tumble: Tumble, measured: list[Worl
     assert [line.split("  ")[0] for line in off.splitlines()[2:]] == [
         n for n in NAMES if n not in ("gravity", "friction", "continuous collision", "sleeping")
     ]
-    assert summary.startswith(f"The Talk/Pyramid, 79 bodies, 123 us a step. It calls for 3 of {len(NAMES)} effects;")
+    assert summary.startswith(f"The Talk/Pyramid, 79 bodies, 123 us a step. It calls for 4 of {len(NAMES)} effects;")
     assert "compiling the engine from nothing" in err
     assert measured[0].step_count == effects.SETTLED
 
