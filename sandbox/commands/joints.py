@@ -30,11 +30,11 @@ class Join(PhysicsCommand):
     """A joint between two bodies, by their places in the order of creation, and a point of each in its own frame [m].
 
     Places and not serials: those do not go back with a restored state. POINT: a point of the world, which a static body
-    holds. A distance joint holds the two points, an
-    axis goes from the first to the second, and other joints have the second for their anchor. hertz [1/s] and
-    damping_ratio: of its spring, 0 for none. lower, upper: limits from how it is now, if limited [rad] or [m].
-    strength: of its motor, which goes at `speed` [rad/s] or [m/s], 0 for none; of a motor joint, 0 for any. break_force
-    [N]: 0 for never. collide: whether the bodies do; with a point of the world all do.
+    holds. A distance joint holds the two points, an axis goes from the first to the second, and other joints have the
+    second for their anchor. hertz [1/s] and damping_ratio: of its spring, 0 for none. lower, upper: limits from how it
+    is now, if limited [rad] or [m]. strength: of its motor, which goes at `speed` [rad/s] or [m/s], 0 for none; of a
+    motor joint, 0 for any. break_force [N]: 0 for never. collide: whether the bodies do; with a point of the world all
+    do.
     """
 
     kind: str
