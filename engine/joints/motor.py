@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from engine import validate
-from engine.joints.fields import Hertz, Most, Number, spring_of
-from engine.joints.joint import Joint, Pair, add, checked_pair
-from engine.joints.weld import HeldHertz
+from engine.joints.fields import Most, Number, spring_of
+from engine.joints.joint import Pair, add, checked_pair
+from engine.joints.weld import Soft
 from engine.tables import POINT, STIFF
 from engine.vec2 import Vec2, unrotate
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from engine.world import World
 
 
-class MotorJoint(Joint):
+class MotorJoint(Soft):
     """A motor joint; World.create_joint_motor says what its numbers are."""
 
     __slots__ = ()
@@ -26,12 +26,6 @@ class MotorJoint(Joint):
     max_force = Most("joints", "max_force", "That holds the place [N]; None: any.")
     max_torque = Most("turns", "max_spring", "That holds the angle [N m]; None: any.")
     angle = Number("turns", "target", validate.number, "Of body2 over body1, to which it is driven [rad].")
-    linear_hertz = HeldHertz("Frequency of the spring that holds the place [1/s]; None: as stiff as joints.")
-    linear_damping_ratio = Number("joints", "damping_ratio", validate.non_negative, "Of that spring: 1 is critical.")
-    angular_hertz = Hertz(
-        "turns", STIFF, "Frequency of the spring that holds the angle [1/s]; None: as stiff as joints."
-    )
-    angular_damping_ratio = Number("turns", "damping_ratio", validate.non_negative, "Of that spring: 1 is critical.")
 
     @property
     def offset(self) -> Vec2:

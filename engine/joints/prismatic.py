@@ -36,18 +36,24 @@ class Sliding(Joint):
         return float(dot(b - a, self.axis))
 
 
-class PrismaticJoint(SlideMotor, Sliding):
-    """A prismatic joint; World.create_joint_prismatic says what its numbers are."""
+class SprungSlide(Sliding):
+    """A joint with limits and a spring along its axis."""
 
     __slots__ = ()
-
-    kind = "prismatic"
 
     lower = Limit("slides", "lower", "Least translation [m]; None: any.")
     upper = Limit("slides", "upper", "Greatest translation [m]; None: any.")
     hertz = Hertz("slides", NO_SPRING, "Frequency of the spring along the axis [1/s]; None: there is none.")
     damping_ratio = Number("slides", "damping_ratio", validate.non_negative, "Of that spring: 1 is critical.")
     target = Number("slides", "target", validate.number, "Translation at which that spring rests [m].")
+
+
+class PrismaticJoint(SlideMotor, SprungSlide):
+    """A prismatic joint; World.create_joint_prismatic says what its numbers are."""
+
+    __slots__ = ()
+
+    kind = "prismatic"
 
 
 def create_joint_prismatic(

@@ -28,19 +28,25 @@ class HeldHertz(Number):
         return {"hertz": 0.0 if value is None else checked(precision, self.name, value, validate.positive)}
 
 
-class WeldJoint(Turning):
-    """A weld joint; World.create_joint_weld says what its numbers are."""
+class Soft(Joint):
+    """A joint whose point and angle springs may hold."""
 
     __slots__ = ()
 
-    kind = "weld"
-
-    linear_hertz = HeldHertz("Frequency of the spring that holds the anchors together [1/s]; None: as stiff as joints.")
+    linear_hertz = HeldHertz("Frequency of the spring that holds the point [1/s]; None: as stiff as joints.")
     linear_damping_ratio = Number("joints", "damping_ratio", validate.non_negative, "Of that spring: 1 is critical.")
     angular_hertz = Hertz(
         "turns", STIFF, "Frequency of the spring that holds the angle [1/s]; None: as stiff as joints."
     )
     angular_damping_ratio = Number("turns", "damping_ratio", validate.non_negative, "Of that spring: 1 is critical.")
+
+
+class WeldJoint(Soft, Turning):
+    """A weld joint; World.create_joint_weld says what its numbers are."""
+
+    __slots__ = ()
+
+    kind = "weld"
 
 
 def create_joint_weld(

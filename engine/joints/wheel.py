@@ -5,29 +5,23 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from engine import validate
-from engine.joints.fields import Hertz, Limit, Number, limits_of, motor_of, spring_of
+from engine.joints.fields import limits_of, motor_of, spring_of
 from engine.joints.joint import Pair, add, anchored, axis_of, checked_pair
-from engine.joints.prismatic import Sliding
+from engine.joints.prismatic import SprungSlide
 from engine.joints.revolute import Turning, TurnMotor
-from engine.tables import ACROSS, NO_SPRING
+from engine.tables import ACROSS
 
 if TYPE_CHECKING:
     from engine.bodies import Body
     from engine.world import World
 
 
-class WheelJoint(TurnMotor, Turning, Sliding):
+class WheelJoint(TurnMotor, Turning, SprungSlide):
     """A wheel joint; World.create_joint_wheel says what its numbers are."""
 
     __slots__ = ()
 
     kind = "wheel"
-
-    lower = Limit("slides", "lower", "Least translation along the axis [m]; None: any.")
-    upper = Limit("slides", "upper", "Greatest translation along the axis [m]; None: any.")
-    hertz = Hertz("slides", NO_SPRING, "Frequency of the spring along the axis [1/s]; None: there is none.")
-    damping_ratio = Number("slides", "damping_ratio", validate.non_negative, "Of that spring: 1 is critical.")
-    target = Number("slides", "target", validate.number, "Translation at which that spring rests [m].")
 
 
 def create_joint_wheel(

@@ -2,7 +2,7 @@
 
 Along an axis fixed to body1 (with d the way from anchor to anchor and n the axis, the value is n . d), or along d
 itself, when the value is its length: a rod, a rope, a spring between two points. Either way the rate is
-n . (v2 - v1) + w2 (r2 x n) - w1 ((r1 + d) x n).
+n . (v2 - v1) + w2 (r2 x n) - w1 ((r1 + d) x n); along.py has the passes.
 """
 
 from __future__ import annotations
@@ -14,9 +14,9 @@ import numpy as np
 from engine.jit import kernel
 from engine.lanes import const, over, select, sqrt
 from engine.rows import at, numbers_at
-from engine.solvers.soft_step.joints import free
+from engine.solvers.soft_step.joints.along import ALONG_FIELDS
 from engine.solvers.soft_step.joints.frames import BODY_FIELDS, FRAME_FIELDS, anchors_now, write_bodies, write_frame
-from engine.solvers.soft_step.movers import load, store
+from engine.solvers.soft_step.movers import load
 from engine.tables import ALONG_WAY, REALS
 from engine.vec2 import Vec2, choose, cross, dot, rotate
 
@@ -27,11 +27,7 @@ def slide_dtype(precision: str) -> np.dtype:
     real = REALS[precision]
     names = (
         *BODY_FIELDS,
-        "nx", "ny",  # along the slide, now
-        "arm1", "arm2",  # how an impulse along it turns body1 and body2: (r1 + d) x n, r2 x n [m]
-        "inverse",  # what an impulse of 1 changes of the rate [1/kg]
-        "mass",  # one over it [kg]
-        "value",  # where it is, now [m]
+        *ALONG_FIELDS,
         *FRAME_FIELDS,
         "axis_x", "axis_y",  # in the world, as the step began
         "by_way",  # 1: along the way from anchor to anchor; 0: along the axis
@@ -83,42 +79,3 @@ def refresh(first, last, rows, movers):
         a, b = load(movers, row.body1), load(movers, row.body2)
         now = anchors_now(row, a, b)
         write_geometry(row, now.r1, now.r2, now.way, rotate(a.q, Vec2(row.axis_x, row.axis_y)))
-
-
-@kernel
-def push(row, movers, a, b, impulse):
-    """Gives body2 an impulse along the slide, and body1 the other way."""
-    along = Vec2(row.nx, row.ny) * impulse
-    w1 = a.w - row.inverse_inertia1 * row.arm1 * impulse
-    w2 = b.w + row.inverse_inertia2 * row.arm2 * impulse
-    store(movers, row.body1, a.v - along * row.inverse_mass1, w1, a.turned)
-    store(movers, row.body2, b.v + along * row.inverse_mass2, w2, b.turned)
-
-
-@kernel
-def warm_start(first, last, rows, springs, motors, limits, movers):
-    """Gives the bodies the impulses of the substep before. Here and below a table is None that no joint calls for."""
-    for k in range(first, last):
-        row = at(rows, k)
-        impulse = free.carried(const(0.0, row.mass), springs, motors, limits, k)
-        push(row, movers, load(movers, row.body1), load(movers, row.body2), impulse)
-
-
-@kernel
-def forget(first, last, rows, springs, motors, limits):
-    """Without warm starting each substep begins with nothing."""
-    for k in range(first, last):
-        free.forget(const(0.0, at(rows, k).mass), springs, motors, limits, k)
-
-
-@kernel
-def solve(first, last, rows, springs, motors, limits, movers, biased, kept, step):
-    """One pass over the rows: with bias, or taking the push back; kept as in point.py."""
-    for k in range(first, last):
-        row = at(rows, k)
-        a, b = load(movers, row.body1), load(movers, row.body2)
-        speed = dot(b.v - a.v, Vec2(row.nx, row.ny)) + (row.arm2 * b.w - row.arm1 * a.w)
-        impulse = free.solve(
-            row.value, speed, row.inverse, row.mass, springs, motors, limits, k, biased, kept, step
-        )  # fmt: skip
-        push(row, movers, a, b, impulse)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from engine.jit import kernel
 from engine.lanes import const
+from engine.solvers.soft_step.joints import along as directions
 from engine.solvers.soft_step.joints import free
 from engine.solvers.soft_step.joints import line as lines
 from engine.solvers.soft_step.joints import point as points
@@ -47,22 +48,29 @@ def prepare_free(first, last, slots, springs, motors, limits, free_parts, step):
 
 
 @kernel
+def along(verb, first, last, slots, rows, springs, motors, limits, free_parts, moved, step):
+    """What is done alike to rows that turn and to rows that slide."""
+    if verb == PREPARE_ROWS:
+        prepare_free(first, last, slots, springs, motors, limits, free_parts, step)
+    elif verb == WARM_ROWS:
+        directions.warm_start(first, last, rows, springs, motors, limits, moved)
+    elif verb == FORGET_ROWS:
+        directions.forget(first, last, rows, springs, motors, limits)
+    elif verb == STORE_ROWS:
+        free.store_impulses(first, last, slots, springs, motors, limits, free_parts, step)
+    elif solves(verb):
+        biased = verb == BIASED_ROWS
+        directions.solve(first, last, rows, springs, motors, limits, moved, biased, kept_of(verb, step), step)
+
+
+@kernel
 def turn(verb, first, last, slots, rows, springs, motors, limits, joints, turns, bodies, motions, moved, step):
     """Rows that turn."""
     if verb == PREPARE_ROWS:
         turnings.prepare(first, last, slots, joints, bodies, motions, rows)
-        prepare_free(first, last, slots, springs, motors, limits, turns, step)
     elif verb == REFRESH_ROWS:
         turnings.refresh(first, last, rows, moved)
-    elif verb == WARM_ROWS:
-        turnings.warm_start(first, last, rows, springs, motors, limits, moved)
-    elif verb == FORGET_ROWS:
-        turnings.forget(first, last, rows, springs, motors, limits)
-    elif verb == STORE_ROWS:
-        free.store_impulses(first, last, slots, springs, motors, limits, turns, step)
-    elif solves(verb):
-        biased = verb == BIASED_ROWS
-        turnings.solve(first, last, rows, springs, motors, limits, moved, biased, kept_of(verb, step), step)
+    along(verb, first, last, slots, rows, springs, motors, limits, turns, moved, step)
 
 
 @kernel
@@ -70,18 +78,9 @@ def slide(verb, first, last, slots, rows, springs, motors, limits, joints, slide
     """Rows that slide."""
     if verb == PREPARE_ROWS:
         slidings.prepare(first, last, slots, joints, slides, bodies, motions, rows)
-        prepare_free(first, last, slots, springs, motors, limits, slides, step)
     elif verb == REFRESH_ROWS:
         slidings.refresh(first, last, rows, moved)
-    elif verb == WARM_ROWS:
-        slidings.warm_start(first, last, rows, springs, motors, limits, moved)
-    elif verb == FORGET_ROWS:
-        slidings.forget(first, last, rows, springs, motors, limits)
-    elif verb == STORE_ROWS:
-        free.store_impulses(first, last, slots, springs, motors, limits, slides, step)
-    elif solves(verb):
-        biased = verb == BIASED_ROWS
-        slidings.solve(first, last, rows, springs, motors, limits, moved, biased, kept_of(verb, step), step)
+    along(verb, first, last, slots, rows, springs, motors, limits, slides, moved, step)
 
 
 @kernel
