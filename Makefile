@@ -16,8 +16,9 @@ help: ## list the targets
 run: $(STAMP) ## open the sandbox: make run ARGS="--port 9000 --no-open"
 	$(VENV)/bin/tumble run $(ARGS)
 
-test: $(STAMP) ## run the tests: make test ARGS="tests/engine -x"
-	$(VENV)/bin/python -m pytest $(ARGS)
+# A file's tests stay with one worker, so that each kernel is compiled about once. One worker: make test ARGS="-n 0".
+test: $(STAMP) ## run the tests, on all cores: make test ARGS="tests/engine -x"
+	$(VENV)/bin/python -m pytest -n auto --maxprocesses 4 --dist loadfile $(ARGS)
 
 check: $(STAMP) ## what CI runs: lint, format, types, and the tests with none skipped
 	$(VENV)/bin/ruff check
