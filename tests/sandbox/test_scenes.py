@@ -3,21 +3,28 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+import recordings
 from engine import Box, World
 from engine.constants import JOINT_BIAS_FACTOR
 from sandbox.lab.references import buckling_height
+from sandbox.recorder import PartFile
+from sandbox.repeat import repeat
 from sandbox.scenes import SCENES, UnknownScene, find_scene, scene
 from sandbox.scenes.criterion import Criterion, apply
 from sandbox.simulation import TIME_STEP, Simulation
+from sandbox.verbs.run import open_recorder
 from tests.engine.trajectories import Reference, load, row
 from tests.sandbox.watching import PRECISIONS
 
 TALK = "sequential_impulses"
 FOLDERS = ("The Talk", "Stacking", "Shapes", "Effects", "Joints", "Continuous", "Events", "Sleeping", "Benchmark")
+BEFORE, STEPS = 60, 60  # that a recording begins, and that are in it
+FEW = 4  # of both, of thousands of bodies
 CRITERION = Criterion("it is at", lambda world: 0.0, "m", 1.0, at_most=1.0)
 DEMOS = {
     "The Talk/Single Box": "demo1_single_box",
@@ -66,6 +73,23 @@ def test_shows_what_it_says(name: str) -> None:
         f"{claim}: {reading.value:.6g}" for claim, reading in zip(claims, readings, strict=True) if not reading.passed
     ]
     assert not missed
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_what_is_recorded_is_computed_again(name: str, tmp_path: Path) -> None:
+    """Begun while it moves; bit for bit."""
+    simulation = Simulation(name)
+    large = simulation.world.body_count > 1000
+    for _ in range(FEW if large else BEFORE):
+        simulation.step()
+    file = PartFile(tmp_path / "x.rrd", open_recorder, simulation)
+    for _ in range(FEW if large else STEPS):
+        simulation.step()
+        file.show(simulation.frame())
+    recording = recordings.read(file.finish())
+    again = list(repeat(recording))
+    assert recordings.compare(recording, again) is None
+    assert again[-1].step == simulation.world.step_count
 
 
 @pytest.mark.parametrize("name", SCENES)
