@@ -42,8 +42,9 @@ JOINT_DAMPING_RATIO = 2.0
 
 CONTACT_SUBSTEPS_A_CYCLE = 8.0
 JOINT_SUBSTEPS_A_CYCLE = 4.0
-"""Substeps in one period of the stiffest contact and joint: fewer ring. With stiffness "follows" all are that stiff,
-so that the error falls fourfold with every doubling of the substeps."""
+"""Substeps in one period of the stiffest contact and joint, and of the fastest spring of a joint: fewer ring. With
+stiffness "follows" all contacts and joints are that stiff, so that the error falls fourfold with every doubling of the
+substeps."""
 
 STATIC_STIFFENING = 2.0
 """How much higher the frequency is of a contact with a body that no impulse moves: heaps sink less into the ground."""

@@ -117,7 +117,9 @@ class Happened:
         self.touching, begin, end, hit = self._follow_touches(state, self.touching, hit_speed)
         moved = self._room("moved", len(order), MOVED_EVENT)
         moved = moved[: find_moved(order, bodies, state.scratch["before"], number, moved)]
-        noted = {kind: np.array([(number, *row) for row in rows], DTYPES[kind]) for kind, rows in self._noted.items()}
+        noted = {
+            kind: np.array([(number, *row) for row in sorted(rows)], DTYPES[kind]) for kind, rows in self._noted.items()
+        }
         self._noted = {}
         found = {"begin": begin, "end": end, "hit": hit, "moved": moved, **noted}
         copies = {kind: kept(np.array(rows, DTYPES[kind])) for kind, rows in found.items() if len(rows)}

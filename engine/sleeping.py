@@ -338,12 +338,13 @@ def carry_impulses(state: State, carried: float) -> None:
     rows = table.rows[: table.count]
     resting = np.flatnonzero((asleep[rows["body1"]] != 0) | (asleep[rows["body2"]] != 0))
     table.rows["rolling_impulse"][resting] *= carried
-    for name in ("normal_impulse", "tangent_impulse"):
+    for name in ("normal_impulse", "tangent_impulse", "given_normal", "given_tangent"):
         table.contacts[name][resting] *= carried
     joints, order = state.joints.tables["joints"], state.joints.order
     resting = order[(asleep[joints["body1"][order]] != 0) | (asleep[joints["body2"][order]] != 0)]
-    for name in ("impulse_x", "impulse_y"):
+    for name in ("impulse_x", "impulse_y", "given_x", "given_y"):
         joints[name][resting] *= carried
     for part in (state.joints.tables["turns"], state.joints.tables["slides"]):
-        for name in ("spring_impulse", "motor_impulse", "lower_impulse", "upper_impulse"):
-            part[name][resting] *= carried
+        for name in ("spring", "motor", "lower", "upper"):
+            for end in ("impulse", "given"):
+                part[f"{name}_{end}"][resting] *= carried

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from engine.constants import CONTACT_HERTZ, CONTACT_SUBSTEPS_A_CYCLE, JOINT_SUBSTEPS_A_CYCLE, STATIC_STIFFENING
 from engine.jit import kernel
-from engine.lanes import const, over, select
+from engine.lanes import const, minimum, over, select
 
 if TYPE_CHECKING:
     from engine.settings import Settings
@@ -78,10 +78,15 @@ def stiffness(settings: Settings, dt: float) -> Stiffness:
 
 @kernel
 def soft_lanes(hertz, damping_ratio, h):
-    """The same in lanes, for springs that each have a frequency of their own; rigid where that is 0."""
-    omega = hertz * const(2.0 * math.pi, hertz)
+    """The same in lanes, for springs that each have a frequency of their own; rigid where that is 0.
+
+    At most as fast as joints are: what a faster spring asks for, several on one body could not agree upon in a substep,
+    and would blow up.
+    """
     step = const(h, hertz)
     one = const(1.0, hertz)
+    fastest = over(const(2.0 * math.pi / JOINT_SUBSTEPS_A_CYCLE, hertz), step)
+    omega = minimum(hertz * const(2.0 * math.pi, hertz), fastest)
     a1 = const(2.0, hertz) * damping_ratio + step * omega
     a2 = step * omega * a1
     a3 = one / (one + a2)

@@ -26,6 +26,7 @@ from engine.simd import WIDTH
 from engine.sleeping import carry_impulses
 from engine.softness import stiffness
 from engine.solvers import SOLVERS
+from engine.solvers.solver import rounded_step
 from engine.state import NOTHING, State
 from engine.tables import SOFTNESS_FIELDS
 from engine.threads import share, shares, usable
@@ -160,6 +161,8 @@ def prepare_step(state: State, settings: Settings, dt: float) -> None:
         state.stale = True
     carried = dt / state.last_dt if state.last_dt > 0.0 else 1.0  # a longer step gives greater impulses
     if state.prepared_for is not settings or (state.prepared_dt, state.prepared_carried) != (dt, carried):
+        if state.prepared_dt > 0.0 and state.active_joints is not None:
+            state.lists_are_stale |= rounded_step(dt) != rounded_step(state.prepared_dt)  # chains are chosen for it
         state.prepared_for, state.prepared_dt, state.prepared_carried = settings, dt, carried
         write_step(state.steps, settings, dt, carried)
         state.bounds_margin = BOUNDS_MARGIN + 0.5 * float(state.steps["margin"][0])

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from engine import validate
-from engine.joints.fields import Hertz, Limit, MotorSpeed, Number, limits_of, motor_of, spring_of
+from engine.joints.fields import FAR, Hertz, Limit, MotorSpeed, Number, damping, limits_of, motor_of, spring_of
 from engine.joints.joint import Joint, Pair, add, anchored, checked_pair
 from engine.tables import ALONG_WAY, NO_SPRING, NOTHING
 from engine.vec2 import Vec2
@@ -13,6 +13,11 @@ from engine.vec2 import Vec2
 if TYPE_CHECKING:
     from engine.bodies import Body
     from engine.world import World
+
+
+def reach(name: str, value: Any) -> float:
+    """A length [m]."""
+    return validate.between(name, value, 0.0, FAR)
 
 
 class SlideMotor(Joint):
@@ -26,8 +31,8 @@ class SlideMotor(Joint):
     @property
     def motor_force(self) -> float:
         """What the last step's motor gave body2 along the slide, and body1 the other way, on average [N]."""
-        dt = self.world._state.last_dt
-        return float(self._part("slides")["motor_given"]) / dt if dt > 0.0 else 0.0
+        given, dt = float(self._part("slides")["motor_given"]), self.world._state.last_dt
+        return given / dt if dt > 0.0 else 0.0
 
 
 class DistanceJoint(SlideMotor):
@@ -38,13 +43,13 @@ class DistanceJoint(SlideMotor):
     kind = "distance"
     along = ALONG_WAY
 
-    length = Number("slides", "target", validate.non_negative, "At which the rod holds and the spring rests [m].")
-    lower = Limit("slides", "lower", "Least length [m]; None: any.")
-    upper = Limit("slides", "upper", "Greatest length [m]; None: any.")
+    length = Number("slides", "target", reach, "At which the rod holds and the spring rests [m].")
+    lower = Limit("slides", "lower", "Least length [m]; None: any.", least=0.0)
+    upper = Limit("slides", "upper", "Greatest length [m]; None: any.", least=0.0)
     hertz = Hertz(
         "slides", NO_SPRING, "Frequency of the spring [1/s]; None: no spring but a rod, or what limits leave."
     )
-    damping_ratio = Number("slides", "damping_ratio", validate.non_negative, "Of that spring: 1 is critical.")
+    damping_ratio = Number("slides", "damping_ratio", damping, "Of that spring: 1 is critical.")
 
     @property
     def current_length(self) -> float:
@@ -80,18 +85,18 @@ def create_joint_distance(
     """
     checked_pair(self, body1, body2)
     first, second = Vec2(*validate.vector("anchor1", anchor1)), Vec2(*validate.vector("anchor2", anchor2))
+    joint = {**anchored(1, body1, first, "anchor1"), **anchored(2, body2, second, "anchor2")}
     way = second - first
     p, numbers = self.precision, DistanceJoint
     length = float((way.x * way.x + way.y * way.y) ** 0.5) if length is None else length
     slide = {
         **numbers.length.written(p, length),
-        **limits_of(p, lower, upper),
+        **limits_of(lower, upper, least=0.0),
         **spring_of(p, "hertz", hertz),
         **numbers.damping_ratio.written(p, damping_ratio),
         **motor_of(p, motor_speed),
         **numbers.max_motor_force.written(p, max_motor_force),
     }
-    joint = {**anchored(1, body1, first), **anchored(2, body2, second)}
     return add(
         self, DistanceJoint, body1, body2, NOTHING, collide_connected, break_force, break_torque, joint, slide=slide
     )  # fmt: skip

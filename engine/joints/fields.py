@@ -17,6 +17,19 @@ FAR = 1e9
 Check = Callable[[str, Any], float]
 
 
+MOST_DAMPING = 1e6
+
+
+def place(name: str, value: Any) -> float:
+    """Where something along a joint is [m] or [rad]."""
+    return validate.between(name, value, -FAR, FAR)
+
+
+def damping(name: str, value: Any) -> float:
+    """A damping ratio."""
+    return validate.between(name, value, 0.0, MOST_DAMPING)
+
+
 def checked(precision: str, name: str, value: Any, check: Check) -> float:
     """A number that is right, and that the solver's precision can hold."""
     number = check(name, value)
@@ -91,10 +104,11 @@ class MotorSpeed(Number):
 
 
 class Limit(Number):
-    """One of two limits; None: there is none on that side."""
+    """One of two limits; None: there is none on that side. least: that it may be."""
 
-    def __init__(self, table: str, field: str, doc: str) -> None:
+    def __init__(self, table: str, field: str, doc: str, least: float = -FAR) -> None:
         super().__init__(table, field, validate.number, doc)
+        self.least = least
 
     def read(self, joint: Joint) -> float | None:
         value = super().read(joint)
@@ -103,7 +117,7 @@ class Limit(Number):
     def __set__(self, joint: Joint, value: Any) -> None:
         joint._check()
         both = {name: Limit.read(getattr(type(joint), name), joint) for name in ("lower", "upper")}
-        joint._write(self.table, limits_of(joint.world.precision, **{**both, self.name: value}))
+        joint._write(self.table, limits_of(**{**both, self.name: value}, least=self.least, set_now=self.name))
 
 
 def spring_of(precision: str, name: str, hertz: float | None, without: int = NO_SPRING) -> dict[str, Any]:
@@ -122,19 +136,18 @@ def motor_of(precision: str, speed: float | None) -> dict[str, Any]:
     return {"motored": 1, "motor_speed": speed}
 
 
-def limits_of(precision: str, lower: float | None, upper: float | None) -> dict[str, Any]:
-    """The columns of both limits. ValueError unless lower <= upper."""
+def limits_of(lower: float | None, upper: float | None, least: float = -FAR, set_now: str = "lower") -> dict[str, Any]:
+    """The columns of both limits, from `least` to FAR. ValueError, of the one set now, unless lower <= upper."""
     if lower is None and upper is None:
         return {"limited": 0, "lower": 0.0, "upper": 0.0}
-    allowed = f"a number from {-FAR:g} to {FAR:g}, or None"
+    allowed = f"a number from {least:g} to {FAR:g}, or None"
 
     def side(name: str, value: float | None, none: float) -> float:
-        if value is None:
-            return none
-        number = validate.number(name, value, allowed)
-        return validate.between(name, number, -FAR, FAR)
+        return none if value is None else validate.between(name, validate.number(name, value, allowed), least, FAR)
 
     low, high = side("lower", lower, -FAR), side("upper", upper, FAR)
+    if low > high and set_now == "upper":
+        raise validate.refuse("upper", upper, f"at least lower, which is {lower!r}")
     if low > high:
         raise validate.refuse("lower", lower, f"at most upper, which is {upper!r}")
     return {"limited": 1, "lower": low, "upper": high}
@@ -158,5 +171,5 @@ def clear_idle(part: Any) -> None:
 
 __all__ = [
     "ALONG_NOTHING", "FAR", "STIFF", "Hertz", "Limit", "Most", "MotorSpeed", "Number", "acts", "checked", "clear_idle",
-    "limits_of", "motor_of", "spring_of",
+    "damping", "limits_of", "motor_of", "place", "spring_of",
 ]  # fmt: skip

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from engine import validate
-from engine.joints.fields import Most, Number, acts, clear_idle
+from engine.joints.fields import FAR, Most, Number, acts, clear_idle
 from engine.solvers import SOLVERS
 from engine.tables import ALONG_WAY, HELD, JOINT_KINDS, NEVER, NO_SPRING, NOTHING, SPRING, STIFF
 from engine.trigonometry import cos_sin
@@ -76,14 +76,14 @@ class Joint:
     @property
     def force(self) -> Vec2:
         """The same over the step's time: the force that it held body2 with, on average [N]."""
-        dt = self.world._state.last_dt
-        return self.impulse * (1.0 / dt) if dt > 0.0 else Vec2(0.0, 0.0)
+        impulse, dt = self.impulse, self.world._state.last_dt
+        return impulse * (1.0 / dt) if dt > 0.0 else Vec2(0.0, 0.0)
 
     @property
     def torque(self) -> float:
         """What turned body2, and body1 the other way, on average [N m]."""
-        dt = self.world._state.last_dt
-        return float(self._record["turn_impulse"]) / dt if dt > 0.0 else 0.0
+        impulse, dt = float(self._record["turn_impulse"]), self.world._state.last_dt
+        return impulse / dt if dt > 0.0 else 0.0
 
     @property
     def collide_connected(self) -> bool:
@@ -124,8 +124,9 @@ class Joint:
 def structure(part: Any, table: str) -> tuple:
     """What of a joint decides which rows it has, and which tables are there."""
     if table == "joints":
-        names = ("break_force", "break_torque", "max_force")
-        return tuple(part[name] >= 0.0 for name in names)
+        names = ("break_force", "break_torque", "max_force", "bias_factor")
+        rigid = part["hertz"] == 0.0 and part["softness"] == 0.0
+        return (rigid, *(part[name] >= 0.0 for name in names))
     return tuple(int(part[name]) for name in ("along", "spring", "motored", "limited"))
 
 
@@ -160,10 +161,12 @@ def check_body(world: World, name: str, body: Any) -> Body:
     return body
 
 
-def anchored(number: int, body: Body, point: Pair | Vec2) -> dict[str, float]:
-    """The columns of an anchor, from a point of the world [m]."""
+def anchored(number: int, body: Body, point: Pair | Vec2, name: str = "anchor") -> dict[str, float]:
+    """The columns of an anchor, from a point of the world [m], which is refused by its name if it is too far away."""
     c, s = cos_sin(body.angle)
     local = unrotate(Vec2(c, s), Vec2(*point) - body.position)
+    if not max(abs(local.x), abs(local.y)) <= FAR:
+        raise validate.refuse(name, tuple(point), f"within {FAR:g} m of body{number}")
     return {f"anchor{number}_x": local.x, f"anchor{number}_y": local.y}
 
 

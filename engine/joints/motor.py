@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from engine import validate
-from engine.joints.fields import Most, Number, spring_of
+from engine.joints.fields import FAR, Most, Number, place, spring_of
 from engine.joints.joint import Pair, add, checked_pair
 from engine.joints.weld import Soft
 from engine.tables import POINT, STIFF
@@ -14,6 +14,14 @@ from engine.vec2 import Vec2, unrotate
 if TYPE_CHECKING:
     from engine.bodies import Body
     from engine.world import World
+
+
+def offset_of(value: Pair) -> dict[str, float]:
+    """The columns of an offset [m]."""
+    x, y = validate.vector("offset", value)
+    if not max(abs(x), abs(y)) <= FAR:
+        raise validate.refuse("offset", value, f"of parts from {-FAR:g} to {FAR:g}")
+    return {"anchor1_x": x, "anchor1_y": y}
 
 
 class MotorJoint(Soft):
@@ -25,7 +33,7 @@ class MotorJoint(Soft):
 
     max_force = Most("joints", "max_force", "That holds the place [N]; None: any.")
     max_torque = Most("turns", "max_spring", "That holds the angle [N m]; None: any.")
-    angle = Number("turns", "target", validate.number, "Of body2 over body1, to which it is driven [rad].")
+    angle = Number("turns", "target", place, "Of body2 over body1, to which it is driven [rad].")
 
     @property
     def offset(self) -> Vec2:
@@ -35,8 +43,7 @@ class MotorJoint(Soft):
 
     @offset.setter
     def offset(self, value: Pair) -> None:
-        x, y = validate.vector("offset", value)
-        self._write("joints", {"anchor1_x": x, "anchor1_y": y})
+        self._write("joints", offset_of(value))
 
 
 def create_joint_motor(
@@ -66,11 +73,9 @@ def create_joint_motor(
     p, numbers = self.precision, MotorJoint
     if offset is None:
         offset = unrotate(body1.direction, body2.position - body1.position)
-    x, y = validate.vector("offset", offset)
     angle = body2.angle - body1.angle if angle is None else angle
     joint = {
-        "anchor1_x": x,
-        "anchor1_y": y,
+        **offset_of(offset),
         **numbers.max_force.written(p, max_force),
         **numbers.linear_hertz.written(p, linear_hertz),
         **numbers.linear_damping_ratio.written(p, linear_damping_ratio),

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from engine import validate
-from engine.joints.fields import Most, Number
+from engine.joints.fields import Most, Number, damping
 from engine.joints.joint import Joint, Pair, add, anchored, checked_pair
 from engine.joints.weld import HeldHertz
 from engine.tables import POINT
@@ -25,7 +25,7 @@ class MouseJoint(Joint):
 
     max_force = Most("joints", "max_force", "With which it draws at most [N]; None: any.")
     hertz = HeldHertz("Frequency of the spring [1/s]; None: as stiff as joints.")
-    damping_ratio = Number("joints", "damping_ratio", validate.non_negative, "Of that spring: 1 is critical.")
+    damping_ratio = Number("joints", "damping_ratio", damping, "Of that spring: 1 is critical.")
 
     @property
     def target(self) -> Vec2:
@@ -34,7 +34,7 @@ class MouseJoint(Joint):
 
     @target.setter
     def target(self, value: Pair) -> None:
-        self._write("joints", anchored(1, self.body1, validate.vector("target", value)))
+        self._write("joints", anchored(1, self.body1, validate.vector("target", value), "target"))
 
 
 def create_joint_mouse(
@@ -62,7 +62,7 @@ def create_joint_mouse(
     held = goal if anchor is None else validate.vector("anchor", anchor)
     p, numbers = self.precision, MouseJoint
     joint = {
-        **anchored(1, body1, goal),
+        **anchored(1, body1, goal, "target"),
         **anchored(2, body2, held),
         **numbers.hertz.written(p, hertz),
         **numbers.damping_ratio.written(p, damping_ratio),

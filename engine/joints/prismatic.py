@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from engine import validate
 from engine.joints.distance import SlideMotor
-from engine.joints.fields import Hertz, Limit, Number, limits_of, motor_of, spring_of
+from engine.joints.fields import Hertz, Limit, Number, damping, limits_of, motor_of, place, spring_of
 from engine.joints.joint import Joint, Pair, add, anchored, axis_of, checked_pair
 from engine.tables import ALONG_AXIS, LINE, NO_SPRING
 from engine.vec2 import Vec2, dot, rotate
@@ -44,8 +44,8 @@ class SprungSlide(Sliding):
     lower = Limit("slides", "lower", "Least translation [m]; None: any.")
     upper = Limit("slides", "upper", "Greatest translation [m]; None: any.")
     hertz = Hertz("slides", NO_SPRING, "Frequency of the spring along the axis [1/s]; None: there is none.")
-    damping_ratio = Number("slides", "damping_ratio", validate.non_negative, "Of that spring: 1 is critical.")
-    target = Number("slides", "target", validate.number, "Translation at which that spring rests [m].")
+    damping_ratio = Number("slides", "damping_ratio", damping, "Of that spring: 1 is critical.")
+    target = Number("slides", "target", place, "Translation at which that spring rests [m].")
 
 
 class PrismaticJoint(SlideMotor, SprungSlide):
@@ -91,7 +91,7 @@ def create_joint_prismatic(
         "reference_angle": body2.angle - body1.angle,
     }
     slide = {
-        **limits_of(p, lower, upper),
+        **limits_of(lower, upper),
         **spring_of(p, "hertz", hertz),
         **numbers.damping_ratio.written(p, damping_ratio),
         **numbers.target.written(p, target),

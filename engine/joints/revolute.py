@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from engine import validate
-from engine.joints.fields import Hertz, Limit, MotorSpeed, Number, limits_of, motor_of, spring_of
+from engine.joints.fields import Hertz, Limit, MotorSpeed, Number, damping, limits_of, motor_of, place, spring_of
 from engine.joints.joint import Joint, Pair, add, anchored, checked_pair
 from engine.tables import NO_SPRING, POINT
 
@@ -46,8 +46,8 @@ class TurnMotor(Joint):
     @property
     def motor_torque(self) -> float:
         """What the last step's motor gave body2, and body1 the other way, on average [N m]."""
-        dt = self.world._state.last_dt
-        return float(self._part("turns")["motor_given"]) / dt if dt > 0.0 else 0.0
+        given, dt = float(self._part("turns")["motor_given"]), self.world._state.last_dt
+        return given / dt if dt > 0.0 else 0.0
 
 
 class RevoluteJoint(TurnMotor, Turning):
@@ -61,8 +61,8 @@ class RevoluteJoint(TurnMotor, Turning):
     lower = Limit("turns", "lower", "Least angle [rad]; None: any.")
     upper = Limit("turns", "upper", "Greatest angle [rad]; None: any.")
     hertz = Hertz("turns", NO_SPRING, "Frequency of the spring that turns [1/s]; None: there is none.")
-    damping_ratio = Number("turns", "damping_ratio", validate.non_negative, "Of that spring: 1 is critical.")
-    target = Number("turns", "target", validate.number, "Angle at which that spring rests [rad].")
+    damping_ratio = Number("turns", "damping_ratio", damping, "Of that spring: 1 is critical.")
+    target = Number("turns", "target", place, "Angle at which that spring rests [rad].")
 
     @property
     def bias_factor(self) -> float | None:
@@ -115,7 +115,7 @@ def create_joint_revolute(
         "reference_angle": body2.angle - body1.angle,
     }
     turn = {
-        **limits_of(p, lower, upper),
+        **limits_of(lower, upper),
         **spring_of(p, "hertz", hertz),
         **numbers.damping_ratio.written(p, damping_ratio),
         **numbers.target.written(p, target),

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from engine import validate
-from engine.joints.fields import Hertz, Number, checked, spring_of
+from engine.joints.fields import Hertz, Number, checked, damping, spring_of
 from engine.joints.joint import Joint, Pair, add, anchored, checked_pair
 from engine.joints.revolute import Turning
 from engine.tables import POINT, STIFF
@@ -34,11 +34,11 @@ class Soft(Joint):
     __slots__ = ()
 
     linear_hertz = HeldHertz("Frequency of the spring that holds the point [1/s]; None: as stiff as joints.")
-    linear_damping_ratio = Number("joints", "damping_ratio", validate.non_negative, "Of that spring: 1 is critical.")
+    linear_damping_ratio = Number("joints", "damping_ratio", damping, "Of that spring: 1 is critical.")
     angular_hertz = Hertz(
         "turns", STIFF, "Frequency of the spring that holds the angle [1/s]; None: as stiff as joints."
     )
-    angular_damping_ratio = Number("turns", "damping_ratio", validate.non_negative, "Of that spring: 1 is critical.")
+    angular_damping_ratio = Number("turns", "damping_ratio", damping, "Of that spring: 1 is critical.")
 
 
 class WeldJoint(Soft, Turning):

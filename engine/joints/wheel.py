@@ -61,7 +61,7 @@ def create_joint_wheel(
     }
     turn = {**motor_of(p, motor_speed), **numbers.max_motor_torque.written(p, max_motor_torque)}
     slide = {
-        **limits_of(p, lower, upper),
+        **limits_of(lower, upper),
         **spring_of(p, "hertz", hertz),
         **numbers.damping_ratio.written(p, damping_ratio),
         **numbers.target.written(p, target),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -15,6 +16,13 @@ if TYPE_CHECKING:
 
 def no_chains(state: State, settings: Settings, order: np.ndarray) -> None:
     """Joints are visited one by one."""
+
+
+def rounded_step(dt: float) -> float:
+    """The time step for which `find_chains` chooses [s]: 1/60 times a power of two. So a step that is measured, and
+    never quite the same, calls for a choice no more often than it doubles or halves.
+    """
+    return 2.0 ** round(math.log2(60.0 * dt)) / 60.0
 
 
 @dataclass(frozen=True)

@@ -302,12 +302,13 @@ def test_what_is_noted_is_told_with_the_step() -> None:
     note = world._state.happened
     note.note_fell_asleep([1, 2])
     note.note_woke(np.array([3]))
+    note.note_woke(np.array([1]))
     note.note_broken(4, 0, 2, 12.5, 0.25)
     note.note_broken(7, 1, 2, 3.0, 0.0)
     assert not any(map(len, (world.events.fell_asleep, world.events.woke, world.events.broken)))
     world.step(DT)
     assert world.events.fell_asleep.tolist() == [(2, 1), (2, 2)]
-    assert world.events.woke.tolist() == [(2, 3)]
+    assert world.events.woke.tolist() == [(2, 1), (2, 3)], "in the order of creation"
     assert world.events.broken.tolist() == [(2, 4, 0, 2, 12.5, 0.25), (2, 7, 1, 2, 3.0, 0.0)]
     world.step(DT)
     assert not any(map(len, world.events[4:]))

@@ -21,7 +21,7 @@ from sandbox.simulation import Simulation
 PRECISIONS = ("single", "double")
 SWITCHES = ("accumulate_impulses", "warm_starting", "position_correction", "recycling")
 LARGEST = float(np.finfo(np.float32).max)  # no force may be added to such a velocity in single precision
-PATIENCE = 20.0  # for what must come, on however busy a machine [s]
+PATIENCE = 60.0  # for what must come, on however busy a machine [s]
 
 
 class Watcher:

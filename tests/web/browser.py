@@ -37,6 +37,8 @@ KNOWN = re.compile(  # all that the console may say, and why
     r"|Unable to preventDefault inside passive event listener invocation\."
 )
 CANVAS = "canvas[data-engine]"  # the one with the scene
+FRAMES = 30  # until the camera stands where it should; on a busy machine that takes a while
+DRAW = "count => new Promise(done => { const draw = () => count-- ? requestAnimationFrame(draw) : done(); draw(); })"
 
 
 def find_chromium() -> Path | None:
@@ -56,8 +58,9 @@ def open_page(url: str, width: int = 1280, height: int = 800, scale: float = 1.0
             page.on("console", lambda message: _note(page, message.type, message.text))
             page.on("pageerror", lambda error: _note(page, "error", str(error)))
             page.goto(url)
-            page.wait_for_selector(CANVAS, timeout=20_000)
+            page.wait_for_selector(CANVAS, timeout=60_000)
             page.wait_for_timeout(2500)
+            page.evaluate(DRAW, FRAMES)
             _dismiss_notifications(page)
             yield page
         finally:

@@ -30,7 +30,7 @@ BODY = tuple[str, str, float, float, float, float, float]  # kind, shape, size 1
 GROUND: BODY = ("static", "box", 40.0, 2.0, 0.0, -1.0, 0.0)
 PENTAGON = np.column_stack([np.cos(np.arange(5) * 0.4 * np.pi), np.sin(np.arange(5) * 0.4 * np.pi)])
 DT = 1.0 / 60.0
-PATIENCE = 20.0  # for what must come, on however busy a machine [s]
+PATIENCE = 60.0  # for what must come, on however busy a machine [s]
 EFFECTS = (
     EffectStatus("gravity", True, "gravity is (0, -10) m/s²"),
     EffectStatus("restitution", False, ""),

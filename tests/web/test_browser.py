@@ -127,7 +127,7 @@ def test_space_pauses_and_plays(opened: Opened) -> None:
     session, page = opened
     page.keyboard.press("Space")
     session.wait_for(Pause)
-    page.get_by_role("button", name="Play", exact=True).wait_for(timeout=5000)
+    page.get_by_role("button", name="Play", exact=True).wait_for(timeout=30_000)
     page.keyboard.press("Space")
     session.wait_for(Play)
 
@@ -159,9 +159,9 @@ def test_the_palette_opens_with_the_mouse_in_the_view(opened: Opened) -> None:
     page.mouse.click(*to_pixel(page, VIEW, BOX[4], BOX[5]))  # on a body: nothing comes of it
     page.keyboard.press("Control+k")
     entry = page.get_by_text("Launch a bomb", exact=True)
-    entry.wait_for(timeout=5000)
+    entry.wait_for(timeout=30_000)
     page.keyboard.press("Escape")
-    entry.wait_for(state="hidden", timeout=5000)
+    entry.wait_for(state="hidden", timeout=30_000)
 
 
 @pytest.mark.parametrize("size", [(1280, 800), (1400, 860), (1920, 1080)])

@@ -18,15 +18,17 @@ NUMBER = [*NO_NUMBERS[:6], *NO_NUMBERS[9:11], 10**400, *HUGE]
 NON_NEGATIVE = [*NUMBER, -1, -1e-300]
 POSITIVE = [*NON_NEGATIVE, 0, 0.0]
 NONE = [None]
-VECTOR = NO_VECTORS[:14]
+FAR = [(2e9, 0.0), (0.0, -2e9), (1e300, 0.0)]  # farther than an arm may reach
+VECTOR = [*NO_VECTORS[:14], *FAR]
 LIMIT = [*NUMBER, 2e9, -2e9]
 
 EVERY = {"break_force": NON_NEGATIVE, "break_torque": NON_NEGATIVE, "collide_connected": NO_SWITCHES}
 ANCHOR = {"anchor": VECTOR}
-AXIS = {"axis": [*VECTOR, (0, 0), (0.0, -0.0), (1e-310, 0)]}
+AXIS = {"axis": [*NO_VECTORS[:14], (0, 0), (0.0, -0.0), (1e-310, 0)]}
+LENGTHS = {"lower": [*LIMIT, -1e-3], "upper": [*LIMIT, -1e-3]}
 LIMITS = {"lower": LIMIT, "upper": LIMIT}
-SPRING = {"hertz": POSITIVE, "damping_ratio": [*NON_NEGATIVE, None]}
-TARGET = {"target": [*NUMBER, None]}
+SPRING = {"hertz": POSITIVE, "damping_ratio": [*NON_NEGATIVE, 2e6, None]}
+TARGET = {"target": [*NUMBER, 2e9, None]}
 TURNER = {"motor_speed": NUMBER, "max_motor_torque": [*NON_NEGATIVE, None]}
 SLIDER = {"motor_speed": NUMBER, "max_motor_force": [*NON_NEGATIVE, None]}
 HELD = {
@@ -38,12 +40,15 @@ REFUSED: dict[str, dict[str, list]] = {
         **ANCHOR, **LIMITS, **SPRING, **TARGET, **TURNER, **EVERY, "softness": [*NON_NEGATIVE, None],
         "bias_factor": [*NUMBER, -0.1, 1.1],
     },
-    "distance": {"anchor1": VECTOR, "anchor2": VECTOR, "length": NON_NEGATIVE, **LIMITS, **SPRING, **SLIDER, **EVERY},
+    "distance": {
+        "anchor1": VECTOR, "anchor2": VECTOR, "length": [*NON_NEGATIVE, 2e9], **LENGTHS, **SPRING, **SLIDER, **EVERY,
+    },
     "prismatic": {**ANCHOR, **AXIS, **LIMITS, **SPRING, **TARGET, **SLIDER, **EVERY},
     "weld": {**ANCHOR, **HELD, **EVERY},
     "wheel": {**ANCHOR, **AXIS, **LIMITS, **SPRING, **TARGET, **TURNER, **EVERY},
     "motor": {
-        "offset": VECTOR[1:], "angle": NUMBER, "max_force": NON_NEGATIVE, "max_torque": NON_NEGATIVE, **HELD, **EVERY,
+        "offset": VECTOR[1:], "angle": [*NUMBER, 2e9], "max_force": NON_NEGATIVE, "max_torque": NON_NEGATIVE, **HELD,
+        **EVERY,
     },
     "mouse": {"target": VECTOR, "anchor": VECTOR[1:], **SPRING, "max_force": NON_NEGATIVE, **EVERY},
     "filter": {},
@@ -118,7 +123,7 @@ def test_a_lower_limit_above_the_upper_one(kind: str) -> None:
     unchanged(world, lambda: MAKERS[kind](world, a, b, lower=0.5, upper=0.4), "^lower = 0.5: must be at most upper")
     joint = MAKERS[kind](world, a, b, lower=0.1, upper=0.4)
     unchanged(world, lambda: setattr(joint, "lower", 0.5), "at most upper, which is 0.4")
-    unchanged(world, lambda: setattr(joint, "upper", 0.05), "must be at most upper")
+    unchanged(world, lambda: setattr(joint, "upper", 0.05), "upper = 0.05: must be at least lower")
     assert (joint.lower, joint.upper) == (pytest.approx(0.1), pytest.approx(0.4))
 
 

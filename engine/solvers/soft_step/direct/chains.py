@@ -12,6 +12,7 @@ from engine.solvers.soft_step.direct import choose, system
 from engine.solvers.soft_step.direct.plan import Order, Plan, make_plan
 from engine.solvers.soft_step.direct.rows import direct_dtype
 from engine.solvers.soft_step.tables import mover_dtype
+from engine.solvers.solver import rounded_step
 from engine.tables import DYNAMIC, LINE, POINT, STIFF, empty
 
 if TYPE_CHECKING:
@@ -54,7 +55,7 @@ def find_chains(state: State, settings: Settings, order: np.ndarray) -> Chains |
     found = [(island, choose.order_of(state, island)) for island in candidates]
     islands = [(island, order) for island, order in found if order is not None]
     if settings.joint_solving == "auto" and islands:
-        hertz = stiffness(settings, float(state.steps["dt"][0])).joint_hertz
+        hertz = stiffness(settings, rounded_step(float(state.steps["dt"][0]))).joint_hertz
         islands = [one for one in islands if _stretch(state, settings, *one, hertz) > choose.MOST_STRETCH]
     if not islands:
         return None
@@ -83,7 +84,7 @@ def _stretch(state: State, settings: Settings, island: Island, order: Order, her
         c.rows[f"body{number}"], c.rows[f"inverse_mass{number}"] = rows, inverse_mass[rows]
     c.jacobians[:, 0, 0] = 1.0
     falling = empty(len(inverse_mass), mover_dtype("double"))
-    falling["vx"] = np.where(inverse_mass > 0.0, math.hypot(*settings.gravity), 0.0)
+    falling["vx"] = np.where(inverse_mass > 0.0, max(math.hypot(*settings.gravity), choose.LEAST_GRAVITY), 0.0)
     system.write_diagonals(0, last, c.rows, c.jacobians, c.diagonals, 1e-9)
     system.write_couplings(0, len(p.couplings), p.couplings, c.rows, c.jacobians, c.blocks)
     gives = c.diagonals[:, 0, 0].copy()

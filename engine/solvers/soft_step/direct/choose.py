@@ -1,8 +1,9 @@
 """Which islands of joints are solved at once: those that would give way if their joints were visited one by one.
 
 A joint that carries a load F gives way by F K / w^2, K being what an impulse of 1 changes of its rate and w = 2 pi f
-its frequency (docs/soft_step.md). The loads are those of gravity, as if the island hung in a line from what it is
-joined to: chains.py finds them from the system that would be solved. So a scene calls for it by what it is made of.
+its frequency (docs/soft_step.md). The loads are those of gravity, or of 10 m/s^2 where there is less, as if the island
+hung in a line from what it is joined to: chains.py finds them from the system that would be solved. So a scene calls
+for it by what it is made of.
 """
 
 from __future__ import annotations
@@ -21,6 +22,9 @@ if TYPE_CHECKING:
 MOST_STRETCH = 1e-3
 """Islands whose joints would give way further are solved at once [m]. Larger: chains stretch visibly; smaller: ragdolls
 and carts pay for what nobody sees."""
+
+LEAST_GRAVITY = 10.0
+"""Loads are those of this, at least [m/s^2]: what is whirled, driven or attracted bears loads without gravity, too."""
 
 LONG, HEAVY = 16, 30.0
 """An island that hangs on nothing is looked at, as if it hung on its lightest body, if it has so many joints, or bodies
