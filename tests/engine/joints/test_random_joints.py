@@ -20,8 +20,9 @@ from tests.engine.worlds import DT, POINTS, floor
 
 SCENES = int(os.environ.get("TUMBLE_RANDOM_SCENES", "60"))
 STEPS, PIECE = 600, 60
-FARTHEST, FAR = 0.5, 0.3
-"""That joints are off [m], when bodies of a hundred times their bodies' mass hit something, and at the end."""
+FARTHEST, FAR = 0.5, 0.4
+"""That joints are off [m], when bodies of a hundred times their bodies' mass hit something, and at the end, where a
+motor of 5 N m turns a body of 70 g against a limit: solved at once, that one would be off by 2 mm."""
 
 KINDS = [kind for kind in JOINT_KINDS if kind != "filter"]
 
