@@ -250,6 +250,16 @@ def test_solving_is_set_at_any_time() -> None:
         assert solved_at_once(world) == expected
 
 
+@pytest.mark.parametrize("solving", ["auto", "direct"])
+def test_bodies_without_a_shape_make_no_chain(solving: str) -> None:
+    """They have no mass, and so nothing moves them."""
+    world = World(joint_solving=solving)
+    bodies = [world.create_body(position=(k, 0)) for k in range(3)]
+    for a, b in ((0, 1), (0, 1), (1, 2)):
+        world.create_joint_revolute(bodies[a], bodies[b], anchor=(a + 0.5, 0))
+    assert solved_at_once(world) == 0
+
+
 def test_nets_are_left_to_iterating() -> None:
     world = world_of_joints(joint_solving="direct")
     net = [[world.create_body(Box(0.5, 0.5), position=(x, -y)) for x in range(9)] for y in range(9)]

@@ -90,6 +90,7 @@ def islands_of(state: State, rows: np.ndarray, worth: bool) -> list[Island]:
     """
     joints, motions = state.joints.tables["joints"], state.bodies.tables["motions"]
     moves = motions["inverse_mass"] > 0.0
+    rows = rows[moves[joints["body1"][rows]] | moves[joints["body2"][rows]]]  # what has no mass yet is held by nothing
     root = np.empty(len(moves), np.int64)
     link(joints, rows, moves, root)
     one, other = joints["body1"][rows], joints["body2"][rows]
