@@ -149,3 +149,27 @@ a ball at its highest, is stopped."""
 
 MAX_ITERATIONS = 10_000
 """Most passes that may be asked for: a step that lasts minutes is a typing error."""
+
+# --- avbd -------------------------------------------------------------------------------------------------------------
+# Usual values of the first two: C. Giles et al., "Augmented Vertex Block Descent" (2025). The others are told in
+# effective masses, so that they mean the same for bodies of any mass and steps of any length.
+
+AVBD_ALPHA = 0.95
+"""Part of an error that is there already which a step leaves, usual 0.95 to 0.99. Lower: what overlaps is thrown apart,
+and stacks shake; higher: they sink before their contacts have taken up the weight."""
+
+AVBD_GAMMA = 0.99
+"""Part of the multipliers, with alpha, from which a step starts, usual 0.99. With all of them (alpha gamma = 1) the
+errors of one body feed those of the next: a tower of 10 boxes takes off."""
+
+AVBD_PENALTY = 30.0
+"""Penalty of a row as a step begins, in effective masses over dt^2, usual 10 to 100. Lower: bodies sink; higher: one
+body after the other moves so little that in 10 iterations a heap does not come to rest."""
+
+AVBD_FRICTION_PENALTY = 1.0
+"""The same of friction, usual 0.3 to 2. Higher: what slides is held back though it is beyond the cone; at 30 it slides
+with a third of its acceleration. Lower: what should stick creeps."""
+
+AVBD_GROWTH = 100.0
+"""Growth of a penalty in each iteration, in effective masses over dt^2 for each metre of error, usual 0 to 1000.
+Higher: what falls fast onto a heap is thrown back."""

@@ -17,6 +17,16 @@ from engine.tables import REALS
 STIFFNESSES = ("follows", "fixed")
 TALK = ("sequential_impulses",)
 SOFT = ("soft_step",)
+AHEAD = ("soft_step", "ngs", "xpbd", "avbd", "direct")
+"""Solvers that see contacts ahead."""
+BOUNCING = ("soft_step", "ngs", "xpbd", "direct")
+"""Solvers that let things bounce."""
+SUBSTEPPING = ("soft_step", "xpbd")
+ITERATING = ("soft_step", "sequential_impulses", "ngs", "xpbd", "avbd")
+MOVING = ("soft_step", "xpbd", "avbd")
+"""Solvers that let things sleep, and stop what is fast."""
+STARTING = ("soft_step", "sequential_impulses", "ngs", "avbd")
+"""Solvers that start from the impulses of the step before."""
 
 
 class SettingInfo(NamedTuple):
@@ -78,8 +88,8 @@ class Settings:
 
     gravity: tuple[float, float] = vector((0.0, -10.0), 30.0, "m/s²", "how all bodies fall")
     solver: str = choice("soft_step", SOLVERS, "how contacts and joints are kept")
-    substeps: int = whole(32, "parts of a time step: more make everything stiffer and more exact", SOFT)
-    iterations: int = whole(50, "passes over all constraints, in a step or in each substep")
+    substeps: int = whole(32, "parts of a time step: more make everything stiffer and more exact", SUBSTEPPING)
+    iterations: int = whole(50, "passes over all constraints, in a step or in each substep", ITERATING)
     precision: str = choice("single", REALS, "of the solver's own numbers; stays as the world was made")
     broad_phase: str = choice("dynamic_tree", BROAD_PHASES, "how pairs that may touch are found")
     stiffness: str = choice(
@@ -92,7 +102,7 @@ class Settings:
         constants.CONTACT_DAMPING_RATIO, 0.0, 20.0, 0.1, "", "of contacts: 1 is critical", SOFT
     )
     push_out_speed: float = number(
-        constants.PUSH_OUT_SPEED, 0.0, 10.0, 0.1, "m/s", "at most, of bodies that overlap", SOFT
+        constants.PUSH_OUT_SPEED, 0.0, 10.0, 0.1, "m/s", "at most, of bodies that overlap", MOVING
     )
     joint_hertz: float = number(
         constants.JOINT_HERTZ, 5.0, 240.0, 1.0, "Hz", "of joints, where the stiffness is fixed", SOFT
@@ -102,27 +112,29 @@ class Settings:
         "auto", ("auto", "iterated", "direct"), "chains that would stretch are solved at once; or none, or all", SOFT
     )
     restitution_threshold: float = number(
-        constants.RESTITUTION_THRESHOLD, 0.0, 10.0, 0.1, "m/s", "below it nothing bounces", SOFT
+        constants.RESTITUTION_THRESHOLD, 0.0, 10.0, 0.1, "m/s", "below it nothing bounces", BOUNCING
     )
     speculative_distance: float = number(
-        constants.SPECULATIVE_DISTANCE, 0.0, 0.2, 0.005, "m", "contacts are made this far ahead", SOFT
+        constants.SPECULATIVE_DISTANCE, 0.0, 0.2, 0.005, "m", "contacts are made this far ahead", AHEAD
     )
-    recycling: bool = switch("keep contacts whose bodies hardly moved: what keeps tall stacks standing", SOFT)
+    recycling: bool = switch("keep contacts whose bodies hardly moved: what keeps tall stacks standing", AHEAD)
     recycling_distance: float = number(
-        constants.RECYCLING_DISTANCE, 0.0, 0.2, 0.005, "m", "how far bodies move before contacts are found anew", SOFT
+        constants.RECYCLING_DISTANCE, 0.0, 0.2, 0.005, "m", "how far bodies move before contacts are found anew", AHEAD
     )
-    continuous: bool = switch("what is fast stops where it would go through something", SOFT)
+    continuous: bool = switch("what is fast stops where it would go through something", MOVING)
     maximum_speed: float = number(
-        constants.MAXIMUM_SPEED, 100.0, 10000.0, 100.0, "m/s", "of a body: what would be faster is held to it", SOFT
+        constants.MAXIMUM_SPEED, 100.0, 10000.0, 100.0, "m/s", "of a body: what would be faster is held to it", MOVING
     )
-    sleeping: bool = switch("what lies still falls asleep and costs nothing until something wakes it", SOFT)
-    sleep_speed: float = number(constants.SLEEP_SPEED, 0.0, 1.0, 0.01, "m/s", "below it a body is still", SOFT)
-    sleep_time: float = number(constants.SLEEP_TIME, 0.1, 10.0, 0.1, "s", "so long must a body be still to sleep", SOFT)
+    sleeping: bool = switch("what lies still falls asleep and costs nothing until something wakes it", MOVING)
+    sleep_speed: float = number(constants.SLEEP_SPEED, 0.0, 1.0, 0.01, "m/s", "below it a body is still", MOVING)
+    sleep_time: float = number(
+        constants.SLEEP_TIME, 0.1, 10.0, 0.1, "s", "so long must a body be still to sleep", MOVING
+    )
     friction_mixing: str = choice("geometric", mixing.RULES, "the friction of two shapes that touch")
-    restitution_mixing: str = choice("greatest", mixing.RULES, "the restitution of two shapes that touch", SOFT)
+    restitution_mixing: str = choice("greatest", mixing.RULES, "the restitution of two shapes that touch", BOUNCING)
     wind: tuple[float, float] = vector((0.0, 0.0), 30.0, "m/s", "of the air; moves bodies that have drag")
     accumulate_impulses: bool = switch("clamp the sum of a contact's impulses, not each alone", TALK)
-    warm_starting: bool = switch("start from the impulses of the step before")
+    warm_starting: bool = switch("start from the impulses of the step before", STARTING)
     position_correction: bool = switch("push bodies apart that have sunk into each other")
     tell_events: bool = switch("tell what begins, ends, hits and moves in each step", default=False)
     hit_speed: float = number(

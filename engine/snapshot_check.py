@@ -9,7 +9,7 @@ import numpy as np
 
 from engine import validate
 from engine.effects import BODY_PROPERTIES, SHAPE_PROPERTIES
-from engine.effects.sleeping import SOLVER
+from engine.effects.sleeping import SOLVERS
 from engine.lacking import refuse_lacking
 from engine.narrow_phase import COLLIDER_OF
 from engine.settings import Settings
@@ -182,7 +182,7 @@ def check_sleep(settings: Settings, tables: Mapping[str, np.ndarray]) -> None:
             raise refuse(f"bodies.{name}", "of 0 and 1")
     asleep = tables.get("bodies.asleep", np.zeros(len(bodies), np.uint8)) != 0
     weighs = (motions["inverse_mass"] > 0) & (bodies["serial"] >= 0)
-    if asleep.any() and not (settings.sleeping and settings.solver == SOLVER):
+    if asleep.any() and not (settings.sleeping and settings.solver in SOLVERS):
         raise refuse("bodies.asleep", "of bodies that are awake, with these settings")
     moving = [motions[name] != 0 for name in ("vx", "vy", "w")] + [bodies[name] != 0 for name in FORCES]
     if (asleep & (~weighs | np.any(moving, axis=0))).any():

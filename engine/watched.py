@@ -13,7 +13,7 @@ from engine.configured import Configured
 from engine.diagnostics import Diagnostics, diagnose
 from engine.effects import EffectStatus
 from engine.effects.fluid import Fluid
-from engine.effects.sleeping import SOLVER as SLEEPERS_SOLVER
+from engine.effects.sleeping import SOLVERS as SLEEPERS_SOLVERS
 from engine.events import Events
 from engine.joints import KINDS, Joint
 from engine.lacking import effect_statuses
@@ -175,7 +175,7 @@ class Watched(Configured):
     @property
     def may_sleep(self) -> bool:
         """Whether the settings let bodies fall asleep."""
-        return self.sleeping and self.solver == SLEEPERS_SOLVER
+        return self.sleeping and self.solver in SLEEPERS_SOLVERS
 
     def body_at(self, point: Pair, kind: str = "dynamic") -> Body | None:
         """The body of that kind under a point of the world [m]; of several, the one created last."""

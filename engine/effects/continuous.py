@@ -14,10 +14,12 @@ if TYPE_CHECKING:
     from engine.settings import Settings
     from engine.state import State
 
+SOLVERS = ("soft_step", "xpbd", "avbd")  # those that know it
+
 
 def passing_through(state: State, settings: Settings) -> str:
     """Dynamic bodies that could go through what nothing pushes or, where there are bullets, through each other."""
-    if not settings.continuous or settings.solver != "soft_step":
+    if not settings.continuous or settings.solver not in SOLVERS:
         return ""
     bodies, shapes = state.bodies.tables["bodies"], state.shapes.tables["shapes"]
     pieces = shapes[state.shapes.order]

@@ -17,14 +17,14 @@ if TYPE_CHECKING:
     from engine.settings import Settings
     from engine.state import State
 
-SOLVER = "soft_step"  # the one that knows it
+SOLVERS = ("soft_step", "xpbd", "avbd")  # those that know it
 
 
 def resting(state: State, settings: Settings) -> str:
     """The setting calls for it, where there is something that may rest."""
     order = state.bodies.order
     count = int(np.count_nonzero(state.bodies.tables["bodies"]["kind"][order] == DYNAMIC))
-    if not settings.sleeping or settings.solver != SOLVER or count == 0:
+    if not settings.sleeping or settings.solver not in SOLVERS or count == 0:
         return ""
     return f"what lies still may sleep: {state.bodies.departing('asleep')} of {count} bodies do"
 

@@ -119,17 +119,23 @@ def edge_normals(corners: np.ndarray) -> np.ndarray:
 
 def check_convex(points: tuple[Point, ...]) -> tuple[Point, ...]:
     """The points counter-clockwise. ValueError if they do not go round a convex polygon once."""
-    corners = np.array(points)
-    edges = np.roll(corners, -1, axis=0) - corners
-    lengths = np.hypot(edges[:, 0], edges[:, 1])
-    following = np.roll(edges, -1, axis=0)
-    turns = np.arctan2(edges[:, 0] * following[:, 1] - edges[:, 1] * following[:, 0], np.sum(edges * following, axis=1))
+    lengths, turns = edges_and_turns(points)
     if turns.sum() < 0.0:
-        return check_convex(points[::-1])
+        points = points[::-1]
+        lengths, turns = edges_and_turns(points)  # of what is all but in a line they may be below 0 either way
     once = abs(turns.sum() - 2.0 * np.pi) < 1e-6
     if not (np.all(lengths > 0.0) and np.all(turns > FLAT) and once):
         raise validate.refuse("points", list(points), "the corners of a convex polygon, one after another")
     return points
+
+
+def edges_and_turns(points: tuple[Point, ...]) -> tuple[np.ndarray, np.ndarray]:
+    """(n,) lengths of the edges from each corner to the next [m], and (n,) angles from each to the one after [rad]."""
+    corners = np.array(points)
+    edges = np.roll(corners, -1, axis=0) - corners
+    following = np.roll(edges, -1, axis=0)
+    turns = np.arctan2(edges[:, 0] * following[:, 1] - edges[:, 1] * following[:, 0], np.sum(edges * following, axis=1))
+    return np.hypot(edges[:, 0], edges[:, 1]), turns
 
 
 @kernel

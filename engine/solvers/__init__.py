@@ -2,9 +2,17 @@
 
 from __future__ import annotations
 
-from engine.solvers import sequential_impulses, soft_step
+from engine.solvers import avbd, direct, ngs, sequential_impulses, soft_step, xpbd
 from engine.solvers.solver import Solver
 
 SOLVERS: dict[str, Solver] = {
-    solver.name: solver for solver in (soft_step.SOFT_STEP, sequential_impulses.SEQUENTIAL_IMPULSES)
+    solver.name: solver
+    for solver in (
+        soft_step.SOFT_STEP,
+        sequential_impulses.SEQUENTIAL_IMPULSES,
+        ngs.NGS,
+        xpbd.XPBD,
+        avbd.AVBD,
+        direct.DIRECT,
+    )
 }

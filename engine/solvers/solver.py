@@ -36,6 +36,8 @@ class Solver:
     iterations: int  # where the user says nothing
     substeps: int = 1
     has_substeps: bool = False
+    has_iterations: bool = True  # else it solves its constraints at once
+    visits: float = 1.0  # of each constraint in one iteration: by these the laboratory counts work
     speculative: bool = False  # it takes contacts before shapes touch, and kept ones
     talk_clipping: bool = False  # two boxes collide as in the talk
     find_chains: Callable[[State, Settings, np.ndarray], Any] = no_chains  # joints that it solves at once

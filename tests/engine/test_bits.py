@@ -20,6 +20,8 @@ ROOT = Path(engine.__file__).parents[1]
 # Kernels that differ by whether a table is there, such as "joints or None": how many such patterns the worlds make.
 PATTERNS = {
     "engine.solvers.sequential_impulses.solve_all": 2,  # with joints and without
+    "engine.solvers.ngs.solve_all": 3,  # without joints, with them, and with bouncing besides
+    "engine.solvers.direct.solve_all": 3,
     "engine.integrate.apply_forces": 3,  # gravity; with its scale and both kinds of damping; nothing
     "engine.solvers.soft_step.work.run": 7,  # these three, joints, all, sleepers, and what the talk's solver lacks
 }
@@ -72,7 +74,7 @@ def test_signature_budget(reports: dict[bool, dict]) -> None:
     for name, patterns in PATTERNS.items():
         assert counts[name] == 2 * patterns, name
     # what run_substeps calls is compiled along with it, and counted where it was not found on disk
-    inside = {name: max(PATTERNS.values()) for name in counts if name.startswith("engine.solvers.soft_step.")}
+    inside = {name: max(PATTERNS.values()) for name in counts if name.startswith("engine.solvers.")}
     own = {name: count for name, count in counts.items() if not name.startswith(("engine.lanes.", "engine.vec2."))}
     too_many = {name: count for name, count in own.items() if count > 2 * (inside | PATTERNS).get(name, 1)}
     assert not too_many, too_many

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from engine import SOLVERS, Box, Capsule, Chain, Circle, Polygon, Shape, World
-from tests.engine.worlds import DT, POINTS, PRECISIONS, floor, run, tables_of
+from engine import Box, Capsule, Chain, Circle, Polygon, Shape, World
+from tests.engine.worlds import DT, OF_ANY_SIZE, POINTS, PRECISIONS, floor, run, tables_of
 
 SHAPES = [Box(0.4, 0.3), Circle(0.2), Capsule(0.3, 0.1), Polygon(POINTS, 0.05)]
 
@@ -31,7 +31,7 @@ def one_by_one(world: World, shape: Shape, content: dict[str, np.ndarray], **oth
         )
 
 
-@pytest.mark.parametrize("solver", SOLVERS)
+@pytest.mark.parametrize("solver", OF_ANY_SIZE)
 @pytest.mark.parametrize("precision", PRECISIONS)
 @pytest.mark.parametrize("shape", SHAPES, ids=lambda shape: shape.name)
 def test_at_once_is_one_by_one(shape: Shape, precision: str, solver: str) -> None:

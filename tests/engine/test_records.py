@@ -109,7 +109,7 @@ def test_joint_records_follow_the_bodies(precision: str, solver: str) -> None:
     assert (record["joint"], record["body1"], record["body2"]) == (joint.serial, b.serial, a.serial)
     assert (record["x1"], record["y1"]) == pytest.approx((0.5, 0.75), abs=1e-6)
     assert (record["x2"], record["y2"]) == pytest.approx((0.5, 0.75), abs=1e-6)
-    a.position, a.angle = (10, 10), 0.3 + math.pi / 2
+    a.position, a.angle, a.velocity = (10, 10), 0.3 + math.pi / 2, (1, 2)
     x, y = 0.5 - 1, 0.75 - 2
     first, second = joint.anchors
     assert tuple(first) == pytest.approx((0.5, 0.75), abs=1e-6)

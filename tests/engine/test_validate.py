@@ -62,6 +62,8 @@ NO_POLYGONS = [
     [(0, 0), (1, 0), (0, 1), (0, 0)],  # closed by hand
     [(0, 0), (0, 0), (0, 0)],
     [(0, 0), (1, 1e-12), (2, 0)],  # all but in a line
+    [(1, 1), (1, 1), (-1, 1)],  # turns clockwise, whichever way one goes
+    [(0.5, 1), (-1, -1), (0.5, -1), (0.5, 2)],
 ]
 NO_CHAINS = [*NO_POINTS, [(0, 0), (1, 0), (1, 0)], [(1, 1)] * 2]
 NO_ROWS = [None, 5, "12", b"12", object(), np.array(1.0), [(0, 0), (1,)], [(0, 0), None], [(0, 0, 0)],

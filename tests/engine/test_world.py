@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, invariant, precondition, rule
 
 from engine import BROAD_PHASES, SOLVERS, STAGES, Box, Circle, Polygon, World
-from tests.engine.worlds import DT, POINTS, PRECISIONS, busy, fingerprint, floor, gathering, run, tables_of
+from tests.engine.worlds import DT, OF_ANY_SIZE, POINTS, PRECISIONS, busy, fingerprint, floor, gathering, run, tables_of
 
 COLUMNS = {
     "positions": "position",
@@ -174,7 +174,7 @@ def test_rows_are_used_again_and_the_order_stays_that_of_creation() -> None:
     assert world.find_body(-1) is None
 
 
-@pytest.mark.parametrize("solver", SOLVERS)
+@pytest.mark.parametrize("solver", OF_ANY_SIZE)
 @pytest.mark.parametrize("precision", PRECISIONS)
 def test_a_world_that_lost_bodies_is_the_world_that_never_had_them(precision: str, solver: str) -> None:
     def fill(world: World, extra: bool) -> World:

@@ -18,6 +18,7 @@ import numba
 import numpy as np
 
 from engine import SOLVERS, Box, Capsule, Chain, Circle, Polygon, Segment, World
+from engine.settings import describe
 from engine.trigonometry import cos_sin
 from tests.engine.joints.making import MAKERS, PARTS
 from tests.engine.worlds import DT, POINTS, PRECISIONS, floor, tables_of
@@ -26,7 +27,7 @@ STEPS = 20
 ITERATIONS = 4  # of the talk's solver
 SWITCHED = (("boxes", "single"), ("joined", "double"))
 SWITCHES = ("accumulate_impulses", "warm_starting", "position_correction")
-TALKS = SWITCHES[0]  # soft_step does not know it
+MATTERS = {info.name: info.solvers for info in describe()}  # to which solvers; none: to all
 
 
 def boxes(world: World) -> None:
@@ -166,14 +167,34 @@ def jointed(world: World) -> None:
     world.create_joint_prismatic(a, b, anchor=(0, 4.4), axis=(1, 0.2), lower=-0.1, upper=0.1, collide_connected=False)
 
 
+def parts(world: World) -> None:
+    """Joints that are rows, with all that may act in them, and what bounces: for solvers that lack some kinds."""
+    for k, kind in enumerate(("revolute", "distance", "prismatic", "weld", "wheel")):
+        a = world.create_body(Box(0.4, 0.3), position=(1.5 * k - 4, 2.2), angle=0.1 * k, velocity=(0, -1))
+        b = world.create_body(Box(0.3, 0.5), position=(1.5 * k - 3.5, 2.0), angle=-0.2 * k, fixed_rotation=k == 3)
+        MAKERS[kind](world, a, b, **PARTS[kind] if k else {"softness": 0.1, "lower": -0.05})
+    floor(world, restitution=0.1)
+    world.create_body(Circle(0.3), position=(5, 0.5), velocity=(0, -3), restitution=0.8)
+    world.create_body(Box(0.5, 0.3), position=(6, 0.2), angle=0.1, velocity=(0, -2), restitution=0.5)
+
+
 WORLDS: dict[str, Callable[[World], None]] = {
     build.__name__: build
     for build in (
         boxes, circles, mixed, joined, changing, outlines, compounds, driven, filtered, lively, frictionless,
-        sleepers, jointed,
+        sleepers, jointed, parts,
     )
 }  # fmt: skip
-SOFT_ONLY = ("lively", "jointed")
+NOT_FOR_ALL = {
+    "lively": ("soft_step", "xpbd"),
+    "jointed": ("soft_step",),
+    "parts": ("ngs", "xpbd", "direct"),
+}
+"""Worlds that call for what some solvers lack, with those that are tried."""
+
+ONLY = {"direct": ("boxes", "joined", "frictionless", "parts")}
+"""Without compilation its dense systems take long."""
+
 SETTINGS: dict[str, dict[str, Any]] = {  # of some of them, with soft_step
     "boxes": {"substeps": 3, "iterations": 2},
     "circles": {"stiffness": "fixed", "substeps": 8},
@@ -200,12 +221,14 @@ def cases() -> dict[str, tuple[str, str, str, dict[str, Any]]]:
     found = {}
     for name in WORLDS:
         for solver in SOLVERS:
-            if solver == "sequential_impulses" and name in SOFT_ONLY:
+            if name not in ONLY.get(solver, tuple(WORLDS)) or (name in NOT_FOR_ALL and solver not in NOT_FOR_ALL[name]):
                 continue
             for precision in PRECISIONS:
                 changes: list[dict[str, Any]] = [{}]
                 if (name, precision) in SWITCHED:
-                    changes += [{switch: False} for switch in SWITCHES if solver != "soft_step" or switch != TALKS]
+                    changes += [
+                        {switch: False} for switch in SWITCHES if not MATTERS[switch] or solver in MATTERS[switch]
+                    ]
                 if solver == "soft_step" and precision == "single" and name in SETTINGS:
                     changes.append(SETTINGS[name])
                 for change in changes:

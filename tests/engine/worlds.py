@@ -7,10 +7,12 @@ from typing import Any
 
 import numpy as np
 
-from engine import Body, Box, Capsule, Chain, Circle, Polygon, Segment, Settings, Shape, World
+from engine import SOLVERS, Body, Box, Capsule, Chain, Circle, Polygon, Segment, Settings, Shape, World
 
 DT = 1.0 / 60.0
 PRECISIONS = ("single", "double")
+OF_ANY_SIZE = tuple(name for name in SOLVERS if name != "direct")
+"""Solvers that take a world of any size."""
 
 Placed = tuple[Shape, tuple[float, float], float]
 

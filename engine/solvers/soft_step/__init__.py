@@ -197,6 +197,7 @@ SOFT_STEP = Solver(
     iterations=1,
     substeps=4,
     has_substeps=True,
+    visits=2,  # with its bias, and again without
     speculative=True,
     find_chains=find_chains,
 )

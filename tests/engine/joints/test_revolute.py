@@ -61,7 +61,8 @@ def test_period_of_a_pendulum(angle: float, solver: str) -> None:
     a, b = 1.0, math.cos(angle / 2)
     for _ in range(10):
         a, b = (a + b) / 2, math.sqrt(a * b)
-    assert period == pytest.approx(small / a, rel=2e-3)
+    # what projects velocities once a step loses of them what the rod turns: w^2 dt / 2 a second, of the first order
+    assert period == pytest.approx(small / a, rel={"ngs": 3e-3, "direct": 3e-3, "avbd": 2e-2}.get(solver, 2e-3))
 
 
 @either
@@ -241,7 +242,7 @@ def test_warm_starting_begins_with_the_impulses_of_the_step_before() -> None:
 
 
 def test_default_bias_factor_is_the_solvers_own() -> None:
-    # Box2D Lite's in the talk's solver; soft_step's are springs
+    # Box2D Lite's in the talk's solver; soft_step's are springs; others correct positions, whatever the factor
     pulled = {}
     for factor in (None, float(np.float32(0.2))):
         for solver in SOLVERS:
@@ -250,7 +251,9 @@ def test_default_bias_factor_is_the_solvers_own() -> None:
             assert joint.bias_factor == factor
             joint.body2.position += (0.1, 0.1)
             pulled[factor, solver] = run(world, 5).state_hash()
-    assert len(set(pulled.values())) == 3
+    assert len(set(pulled.values())) == 7
+    for solver in ("ngs", "xpbd", "avbd", "direct"):
+        assert pulled[None, solver] == pulled[float(np.float32(0.2)), solver]
     assert pulled[None, "sequential_impulses"] == pulled[float(np.float32(0.2)), "sequential_impulses"]
 
 
@@ -258,7 +261,7 @@ def test_default_bias_factor_is_the_solvers_own() -> None:
 @pytest.mark.parametrize("precision", PRECISIONS)
 def test_collide_connected(precision: str, solver: str) -> None:
     for collide in (True, False):
-        world = World(gravity=(0, 0), precision=precision, solver=solver)
+        world = World(gravity=(0, 0), precision=precision, solver=solver, position_correction=False)
         a = world.create_body(Box(1, 1))
         other = world.create_body(Box(1, 1), position=(0.2, 0.1))
         b = world.create_body(Box(1, 1), position=(0.5, 0.5))

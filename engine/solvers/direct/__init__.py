@@ -1,0 +1,248 @@
+"""direct: the exact answer of one step's constraints, for small scenes.
+
+All joints and contacts are one mixed linear complementarity problem in float64, solved to rounding (pivoting.py): a
+joint's rate is 0, a contact presses or parts and does neither otherwise, and friction is as large as mu times what
+presses, against what slides, or as large as holding takes. What differs from the truth is then the time step alone.
+
+Velocities are solved with positions as the step begins; bodies move; and then positions are projected: Newton's method,
+whose steps are the same kind of problem, without friction, with the Jacobians of where bodies are (the shortest way, as
+masses weigh it, to where no joint is apart and nothing overlaps). What bounces is told after that: the velocities'
+problem once more, in which a contact that gave an impulse must part with e times the speed of approach.
+
+Where loads may be shared in many ways, as under a pyramid, the answer is the one of least sum of P^2 / mass.
+Sources: D. Stewart and J. Trinkle, "An implicit time-stepping scheme for rigid body dynamics with inelastic collisions
+and Coulomb friction" (IJNME 39, 1996), whose friction is exact in the plane, where the cone is a wedge; M. Anitescu and
+F. Potra (Nonlinear Dynamics 14, 1997).
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from engine.errors import StepError
+from engine.jit import kernel
+from engine.solvers import joint_rows
+from engine.solvers import sequential_impulses as talk
+from engine.solvers.direct.pivoting import solve as solve_exactly
+from engine.solvers.direct.rows import System, add_rates, assemble, write_contacts, write_joints, write_places
+from engine.solvers.moving import advance, begin, shift, take_speeds
+from engine.solvers.ngs import bouncing, note_approach
+from engine.solvers.ngs.contacts import store
+from engine.solvers.soft_step import table
+from engine.solvers.soft_step.movers import finish
+from engine.solvers.soft_step.restitution import bounces_at
+from engine.solvers.soft_step.tables import mover_dtype
+from engine.solvers.solver import Solver
+from engine.vec2 import Vec2
+
+if TYPE_CHECKING:
+    from engine.settings import Settings
+    from engine.state import State
+
+MOST_ROWS = 200
+"""Rows of a step's problem that are still solved: two for each contact point, up to ten for a joint. Time grows with
+their third power, and a step solves a dozen systems, or some hundreds where friction goes in circles."""
+
+PROJECTIONS = 20
+"""Most steps of Newton's method for positions; where little is wrong two or three do."""
+
+CLOSE = 1e-13
+"""What is no farther off than this [m], [rad] is where it should be."""
+
+MOST = 0.2
+"""Furthest that a projection moves a constraint [m], [rad]. Larger: what overlaps deeply is thrown about."""
+
+
+@kernel
+def scaled(matrix, b, system, count, x):
+    """Solves for impulses: rows are scaled so that the diagonal is 1. Returns by what part it may be wrong."""
+    scale = np.zeros(count)
+    low, high, ratio = system.low[:count].copy(), system.high[:count].copy(), system.ratio[:count].copy()
+    for i in range(count):
+        if matrix[i, i] > 0.0:
+            scale[i] = 1.0 / np.sqrt(matrix[i, i])
+    for i in range(count):
+        unit = scale[i] if scale[i] > 0.0 else 1.0
+        low[i], high[i] = low[i] / unit, high[i] / unit
+        if system.normal[i] >= 0:
+            ratio[i] = ratio[i] * scale[system.normal[i]] / unit
+        for j in range(count):
+            matrix[i, j] = matrix[i, j] * scale[i] * scale[j]
+        if scale[i] > 0.0:
+            matrix[i, i] = 1.0
+        b[i] = b[i] * scale[i]
+    error = solve_exactly(matrix, b, low, high, ratio, system.normal[:count], x)
+    for i in range(count):
+        x[i] = x[i] * scale[i]
+    return error
+
+
+@kernel
+def push(system, count, motions, x):
+    """Gives the bodies all impulses: v += M^-1 J^T x, summed up in float64."""
+    change = np.zeros((len(motions), 3))
+    for k in range(count):
+        for side in range(2):
+            row, sign = system.body[k, side], 2.0 * side - 1.0
+            mass, inertia = np.float64(motions[row].inverse_mass), np.float64(motions[row].inverse_inertia)
+            change[row, 0] += sign * mass * system.jacobian[k, 0] * x[k]
+            change[row, 1] += sign * mass * system.jacobian[k, 1] * x[k]
+            change[row, 2] += sign * inertia * system.jacobian[k, 2 + side] * x[k]
+    for row in range(len(motions)):
+        motion = motions[row]
+        motion.vx += change[row, 0]
+        motion.vy += change[row, 1]
+        motion.w += change[row, 2]
+
+
+@kernel
+def keep(rows, arbiters, contacts, count, x):
+    """Notes all impulses where joints and contacts have them."""
+    k = 0
+    if rows is not None:
+        for i in range(len(rows)):
+            rows[i].impulse = x[k]
+            rows[i].given = x[k]
+            k += 1
+    for index in range(count):
+        for i in range(arbiters[index].count):
+            contacts[index, i].normal_impulse = x[k]
+            contacts[index, i].tangent_impulse = x[k + 1]
+            k += 2
+    store(arbiters, contacts, count)
+
+
+@kernel
+def expect_bounces(system, first, arbiters, contacts, bounces, count, threshold):
+    """Puts the speeds of bouncing into the problem. Returns whether there are any."""
+    k, any_bounces = first, False
+    for index in range(count):
+        for i in range(arbiters[index].count):
+            bounce = bounces[index, i]
+            if bounces_at(bounce.restitution, bounce.speed, contacts[index, i].given_normal, threshold):
+                system.bias[k] = np.float64(bounce.restitution) * np.float64(bounce.speed)
+                any_bounces = True
+            k += 2
+    return any_bounces
+
+
+@kernel
+def project(system, rows, frames, arbiters, contacts, count, motions, movers):
+    """Newton's method for positions."""
+    x = np.zeros(len(system.bias))
+    for _ in range(PROJECTIONS):
+        found, worst = write_places(system, rows, frames, arbiters, contacts, count, movers, MOST)
+        if worst <= CLOSE:
+            return
+        matrix = assemble(system, found, motions)
+        scaled(matrix, system.bias[:found].copy(), system, found, x[:found])
+        for k in range(found):
+            for side in range(2):
+                row = system.body[k, side]
+                motion = motions[row]
+                along = Vec2(system.jacobian[k, 0] * x[k], system.jacobian[k, 1] * x[k])
+                arm = system.jacobian[k, 2 + side] * x[k]
+                shift(movers[row], motion.inverse_mass, motion.inverse_inertia, along, arm, 2.0 * side - 1.0)
+
+
+@kernel
+def solve_all(
+    bodies, motions, movers, order, moved, arbiters, contacts, count, bounces, belts, joints, turns, slides, rows,
+    frames, system, steps,
+):  # fmt: skip
+    """One step. Tables are None where nothing calls for them. Returns by what part the impulses may be wrong."""
+    step = steps[0]
+    begin(order, motions, movers)
+    first = 0
+    if rows is not None:
+        joint_rows.prepare(rows, frames, joints, turns, slides, bodies, motions, movers, step)
+        write_joints(system, rows, frames, step)
+        first = len(rows)
+    size = write_contacts(system, first, arbiters, contacts, count, belts, step)
+    x = np.zeros(size)
+    b = system.bias[:size].copy()
+    add_rates(system, size, motions, b)
+    free = b - system.bias[:size]
+    error = scaled(assemble(system, size, motions), b, system, size, x)
+    keep(rows, arbiters, contacts, count, x)
+    push(system, size, motions, x)
+    take_speeds(moved, motions, movers)
+    advance(moved, movers, step.dt)
+    if bounces is not None:
+        if expect_bounces(system, first, arbiters, contacts, bounces, count, step.restitution_threshold):
+            again = np.zeros(size)
+            b = free + system.bias[:size]
+            error = max(error, scaled(assemble(system, size, motions), b, system, size, again))
+            keep(rows, arbiters, contacts, count, again)
+            push(system, size, motions, again - x)
+            take_speeds(moved, motions, movers)
+    if rows is not None:
+        joint_rows.store(rows, frames, joints, turns, slides, step.parts)
+    if step.position_correction != 0:
+        project(system, rows, frames, arbiters, contacts, count, motions, movers)
+    return error
+
+
+def size_of(state: State) -> int:
+    """Rows of this step's problem."""
+    table, found = state.arbiters, joint_rows.rows_of(state)
+    touching = int(table.rows["count"][: table.count].sum())
+    return 2 * touching + (0 if found is None else len(found.rows))
+
+
+def apply_forces(state: State, settings: Settings) -> int:
+    """Stage 2 of the talk. StepError if the scene is too large."""
+    size = size_of(state)
+    if size > MOST_ROWS:
+        raise StepError(
+            f"step {state.step_count + 1}, stage 'apply forces': the solver 'direct' takes at most {MOST_ROWS} rows, "
+            f"two for each contact point and up to ten for a joint, and there are {size}: take another solver"
+        )
+    note_approach(state, settings)
+    return talk.apply_forces(state, settings)
+
+
+def empty_system(count: int) -> System:
+    """Room for so many rows."""
+    numbers = [np.zeros(count) for _ in range(5)]
+    bias, give, low, high, ratio = numbers
+    return System(
+        np.zeros((count, 2), np.int64), np.zeros((count, 4)), bias, give, low, high, ratio, np.zeros(count, np.int64)
+    )
+
+
+def solve(state: State, settings: Settings) -> None:
+    """Stage 3 of the talk, and where bodies go."""
+    tables, pairs = state.bodies.tables, state.arbiters
+    found = joint_rows.rows_of(state)
+    joints: tuple = (None,) * 5
+    if found is not None:
+        joints = (*(state.joints.tables[name] for name in ("joints", "turns", "slides")), *found)
+    movers = table(state, "movers", mover_dtype(state.precision), len(tables["bodies"]), exactly=True)
+    arguments = (
+        tables["bodies"], tables["motions"], movers, state.awake_order, state.moving, pairs.rows, pairs.contacts,
+        pairs.count, bouncing(state), state.column("conveyor", state.shapes, "tangent_speed"), *joints,
+        empty_system(max(1, size_of(state))), state.steps,
+    )  # fmt: skip
+    state.scratch["direct, error"] = solve_all(*arguments)
+
+
+def update_positions(state: State, settings: Settings) -> int:
+    """Stage 4 of the talk: bodies go where velocities and corrections took them."""
+    tables, order = state.bodies.tables, state.awake_order
+    found = finish(0, len(order), order, tables["bodies"], tables["motions"], state.scratch["movers"], None)
+    return -1 if found >= 0 else int(order[-1 - found])
+
+
+DIRECT = Solver(
+    "direct",
+    apply_forces,
+    solve,
+    update_positions,
+    iterations=1,
+    has_iterations=False,
+    speculative=True,
+    lacks=("rolling resistance", "continuous collision", "bullets", *joint_rows.LACKING),
+)
