@@ -24,7 +24,7 @@ BOX_INERTIA = 1.0 / 6.0  # of a unit square, in parts of its mass [m^2]
 
 def is_soft(world: World) -> bool:
     """Whether its contacts are springs."""
-    return world.settings.solver != "sequential_impulses"
+    return world.settings.solver == "soft_step"
 
 
 def contact_hertz(world: World, dt: float) -> float:

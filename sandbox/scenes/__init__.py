@@ -12,6 +12,7 @@ from sandbox.scenes import joints
 from sandbox.scenes import continuous
 from sandbox.scenes import events
 from sandbox.scenes import sleeping
+from sandbox.scenes import robustness
 from sandbox.scenes import benchmark
 
 # isort: on
@@ -27,6 +28,7 @@ __all__ = [
     "events",
     "find_scene",
     "joints",
+    "robustness",
     "scene",
     "shapes",
     "sleeping",

@@ -21,9 +21,9 @@ def add_floor(world: World, width: float, friction: float = ROUGH, x: float = 0.
     return world.create_body(Box(width, 2.0), position=(x, y - 1.0), kind="static", friction=friction)
 
 
-def and_a_fifth(predicted: Predict) -> Predict:
-    """What may be at most, where so much is predicted."""
-    return lambda world, dt: MARGIN * predicted(world, dt)
+def and_a_fifth(predicted: Predict, most: float = math.inf) -> Predict:
+    """What may be at most, where so much is predicted; most: beyond which all is lost, whatever is predicted."""
+    return lambda world, dt: min(MARGIN * predicted(world, dt), most)
 
 
 def distance_from(world: World, index: int, x: float, y: float) -> float:

@@ -1,39 +1,99 @@
-"""Try hard cases: what holds and what falls, by criteria from physics."""
+"""Try hard cases: what holds, what falls, and what that costs."""
 
 from __future__ import annotations
 
 import argparse
+import json
 
 from rich.console import Console
 from rich.progress import Progress
 
+from engine import SOLVERS
 from sandbox.compiling import compile_all
-from sandbox.lab.stability import CASES, check_all, variants_of
-from sandbox.lab.stability_report import as_markdown, as_text
-from sandbox.verbs.common import add_json, report, say
+from sandbox.lab.hard_cases import CASES
+from sandbox.lab.stability import Row
+from sandbox.lab.stability_baseline import steps_back
+from sandbox.lab.stability_ladder import PEERS
+from sandbox.lab.stability_page import as_markdown
+from sandbox.lab.stability_picture import draw
+from sandbox.lab.stability_report import as_text
+from sandbox.lab.stability_sweep import sweep, workers
+from sandbox.verbs.common import BadInput, add_json, report, say, whole_number
 from sandbox.verbs.laboratory import add_folder, chosen_names, prepare_folder, write_file
 
 NAME = "stability"
-PAGE = "stability.md"
-FELL = 1  # exit code: something fell with the settings that a world has if nobody says otherwise
+PAGE, FIGURES = "stability.md", "stability.json"
+BUDGET = 540  # [s]
+FELL = 1  # exit code: something fell that held when docs/stability.json was written
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("case", nargs="*", help=f"of {', '.join(CASES)}; default: all")
-    add_folder(parser, f"write {PAGE} into DIR")
+    parser.add_argument("case", nargs="*", help="names of cases; default: all. A wrong one is answered with the list")
+    parser.add_argument(
+        "--solvers", nargs="+", default=None, metavar="SOLVER", help=f"of {', '.join(SOLVERS)}; default: all of them"
+    )
+    parser.add_argument("--peers", action="store_true", help=f"other engines, too: {', '.join(PEERS)}")
+    parser.add_argument("--defaults", action="store_true", help="with the defaults only, not the cheapest that holds")
+    parser.add_argument(
+        "--budget", type=whole_number(1, 86400), default=BUDGET, metavar="SECONDS",
+        help=f"for all, compiling included: what is not done by then is left out; default: {BUDGET}",
+    )  # fmt: skip
+    parser.add_argument(
+        "--jobs", type=whole_number(1, 64), default=workers(), metavar="N", help="processes; default: one a core"
+    )
+    add_folder(parser, f"write {PAGE}, {FIGURES} and the heat map as PNG and SVG into DIR")
     add_json(parser)
 
 
 def run(options: argparse.Namespace) -> int:
     cases = chosen_names("case", options.case, CASES)
+    solvers = chosen_names("solver", options.solvers or (), SOLVERS)
+    if options.peers:
+        refuse_missing()
+        solvers = [*solvers, *PEERS]
     prepare_folder(options.output)
-    compile_all(say, ("single",))
+    _, seconds = compile_all(say, ("single",))
+    rows, untried = try_all(cases, solvers, options, options.budget - seconds)
+    if options.output is not None:
+        write_all(options, rows)
+    if untried:
+        say(f"the {options.budget} s were not enough for {untried} of {len(cases) * len(solvers)} (--budget)")
+    report(options, [row.to_dict() for row in rows], as_text(rows))
+    back = steps_back(rows)
+    for row in back:
+        say(f"{row.case} held with the defaults of {row.solver} when docs/stability.json was written, and fails now")
+    return FELL if back else 0
+
+
+def refuse_missing() -> None:
+    """BadInput if another engine is not to be had."""
+    from sandbox.lab.peers import PeerError, Pyb2d3, Pymunk
+
+    for peer in (Pymunk, Pyb2d3):
+        try:
+            peer(1).close()
+        except PeerError as error:
+            raise BadInput(str(error)) from None
+
+
+def try_all(cases: list[str], solvers: list[str], options: argparse.Namespace, seconds: float) -> tuple[list[Row], int]:
+    """All rows, a case after the other, and how many cells there was no time for in so many seconds.
+
+    The default solver goes first, then the other engines, then our other solvers.
+    """
+    turns = sorted(solvers, key=lambda name: (name != next(iter(SOLVERS)), name not in PEERS))
+    cells = [(case, solver) for solver in turns for case in cases]
     console = Console(stderr=True)
     with Progress(console=console, disable=not console.is_terminal, transient=True) as progress:
-        task = progress.add_task("trying", total=sum(len(variants_of(case)) for case in cases))
-        rows = check_all(cases, lambda: progress.advance(task))
-    if options.output is not None:
-        write_file(options.output / PAGE, lambda file: file.write_text(as_markdown(rows)))
-    report(options, [row.to_dict() for row in rows], as_text(rows))
-    ours = [row for row in rows if row.default and row.solver == "soft_step"]
-    return 0 if all(row.passed for row in ours) else FELL
+        task = progress.add_task("trying", total=len(cells))
+        found = sweep(cells, seconds, lambda: progress.advance(task), defaults_only=options.defaults, jobs=options.jobs)
+    rows = [row for case in cases for solver in solvers for row in found[case, solver]]
+    return rows, sum(not rows_of_cell for rows_of_cell in found.values())
+
+
+def write_all(options: argparse.Namespace, rows: list[Row]) -> None:
+    """The page, its figures and the heat map."""
+    data = "[\n" + ",\n".join(json.dumps(row.to_dict()) for row in rows) + "\n]\n"
+    write_file(options.output / PAGE, lambda file: file.write_text(as_markdown(rows)))
+    write_file(options.output / FIGURES, lambda file: file.write_text(data))
+    write_file(options.output / PAGE, lambda file: draw(rows, file.parent))

@@ -138,6 +138,23 @@ def test_a_failing_single_step_too() -> None:
         assert frame.status.failure == ""
 
 
+@pytest.mark.parametrize("value", [np.nan, np.inf])
+def test_a_body_poisoned_from_outside_is_named_and_the_last_good_state_kept(value: float) -> None:
+    """Behind the session's back, between two steps: what the step finds is told, and undone."""
+    with running("The Talk/Pyramid", paused=True) as (session, watcher):
+        good = step_by_step(session, watcher, 5)
+        world = session._simulation.world
+        body = world.bodies[7]
+        world._state.bodies.tables["motions"]["vx"][body._row] = value
+        session.submit(ask.StepOnce())
+        frame = watcher.wait(lambda frame: frame.status.failure)
+        assert "is no longer finite" in frame.status.failure
+        assert "body " in frame.status.failure
+        assert np.isfinite(frame.positions).all()
+        assert whole_frame(frame) == whole_frame(good)
+        assert step_by_step(session, watcher, 1).status.failure == ""
+
+
 @pytest.mark.parametrize("error", [StepError("made up"), RuntimeError("made up"), MemoryError("made up")])
 def test_whatever_fails_in_a_step_is_taken_back(error: Exception, monkeypatch: pytest.MonkeyPatch) -> None:
     step = Simulation.step

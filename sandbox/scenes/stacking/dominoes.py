@@ -22,7 +22,7 @@ PUSH = 1.5  # its spin [rad/s]
 WATCHED = 5.0  # [s]
 REACHED = 13.5
 """How far the wave gets in that time [m]: what both solvers converge to with ever smaller steps (tests/sandbox/lab/
- test_stability_cases.py)."""
+ test_stability.py)."""
 
 
 def wave_front(world: World) -> float:

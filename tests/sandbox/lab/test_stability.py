@@ -1,48 +1,64 @@
-"""`tumble stability`: what it runs, how it judges, and the command."""
+"""`tumble stability`: how it runs a case, how it judges, and which settings it tries."""
 
 from __future__ import annotations
 
 import json
 import math
+import time
+from collections.abc import Iterator
 from dataclasses import replace
-from pathlib import Path
 
+import numpy as np
 import pytest
 
-from engine import StepError, World
+from engine import SOLVERS, Box, StepError, World
 from sandbox.lab import stability
-from sandbox.lab.stability import CASES, LARGE, VARIANTS, Clock, Row, Variant, check, check_all, variants_of, worst
-from sandbox.lab.stability_report import as_markdown, as_text, settings_of
-from sandbox.scenes import find_scene
+from sandbox.lab.hard_cases import CASES
+from sandbox.lab.hard_cases.case import Case
+from sandbox.lab.stability import OutOfTime, Row, cheapest, check, solvers, try_cell, worst
+from sandbox.lab.stability_ladder import PEERS, Variant, climb, ladder
+from sandbox.lab.stability_stage import OurStage, PeerStage, open_stage
+from sandbox.scenes import Scene, find_scene
 from sandbox.scenes.criterion import Criterion, Reading
 from sandbox.scenes.stacking.dominoes import REACHED, WATCHED, wave_front
-from tests.sandbox.commandline import Tumble, one_line
 
 KEYS = ["case", "solver", "settings", "default", "passed", "value", "limit", "unit", "ms"]
 SOFT, TALK = Variant("soft_step"), Variant("sequential_impulses")
-ASKED_FOR = [
-    "stack_10", "stack_20", "stack_40", "pyramid", "mass_ratio_400",
-    "overlap_recovery", "card_house", "arch", "dominoes", "friction_ramp",
-]  # fmt: skip
+
+
+def falling(world: World) -> None:
+    """A box that falls for ever."""
+    world.create_body(Box(1, 1), position=(0.0, 0.0))
+
+
+def fallen(world: World) -> float:
+    return -float(world.positions[0, 1])
+
+
+@pytest.fixture
+def made_up() -> Iterator[dict[str, Case]]:
+    """Cases that are there for the time of a test."""
+    scene = Scene("Test/Falling", falling, "A box falls.", (0.0, 0.0, 10.0))
+    names = {
+        "holds": Case(scene, (Criterion("it falls by", fallen, "m", 1.0, at_most=6.0, at_least=4.0),)),
+        "falls": Case(scene, (Criterion("it falls by", fallen, "m", 9.0, at_most=1.0, throughout=True),)),
+        "two": Case(
+            scene,
+            (
+                Criterion("it falls by", fallen, "m", 1.0, at_most=9.0),
+                Criterion("it falls further by", fallen, "m", 2.0, at_most=9.0),
+            ),
+        ),
+    }
+    CASES.update(names)
+    yield names
+    for name in names:
+        del CASES[name]
 
 
 @pytest.fixture(scope="module")
 def rows() -> list[Row]:
-    return [check(case, variant) for case in ("mass_ratio_400", "overlap_recovery") for variant in (SOFT, TALK)]
-
-
-def test_these_are_the_cases() -> None:
-    assert list(CASES) == ASKED_FOR
-    assert all(find_scene(scene).shows for scene in CASES.values())
-
-
-def test_every_solver_is_tried_with_its_defaults_and_others() -> None:
-    defaults = [variant.solver for variant in VARIANTS if variant.default]
-    assert defaults == ["soft_step", "sequential_impulses"]
-    for solver in defaults:
-        assert sum(variant.solver == solver for variant in VARIANTS) >= 3
-    assert [variants_of(case) for case in LARGE] == [[SOFT, TALK]] * len(LARGE)
-    assert variants_of("arch") == list(VARIANTS)
+    return [check(case, variant) for case in ("mass_ratio_boxes_400", "overlap_recovery") for variant in (SOFT, TALK)]
 
 
 def test_soft_step_holds_what_the_talk_does_not(rows: list[Row]) -> None:
@@ -55,67 +71,122 @@ def test_the_heavy_box_sinks_as_predicted(rows: list[Row]) -> None:
 
 
 @pytest.mark.parametrize("substeps", [4, 8, 16])
-@pytest.mark.parametrize("case", ["stack_10", "mass_ratio_400", "arch"])
+@pytest.mark.parametrize("case", ["stack_10", "mass_ratio_boxes_400", "mass_ratio_100", "growing_stack", "arch"])
 def test_piles_sink_as_predicted_whatever_the_substeps(case: str, substeps: int) -> None:
     row = check(case, Variant("soft_step", (("substeps", substeps),)))
     assert row.value == pytest.approx(row.limit / 1.2, rel=0.04)
     assert row.passed
 
 
-def test_settings_say_what_it_was_run_with(rows: list[Row]) -> None:
-    dt = pytest.approx(1 / 60)
-    soft = {"dt": dt, "substeps": 4, "iterations": 1, "stiffness": "follows", "recycling": True}
-    assert rows[0].settings == soft
-    assert rows[1].settings == {"dt": dt, "iterations": 10}
-    row = check("mass_ratio_400", Variant("sequential_impulses", (("iterations", 3),), 2))
-    assert row.settings == {"dt": pytest.approx(1 / 120), "iterations": 3}
-    assert row.value < 0.9 * check("mass_ratio_400", Variant("sequential_impulses", (("iterations", 3),))).value
-    assert not row.default
-    assert rows[0].default
-    assert rows[1].default
-
-
 def test_json_has_these_keys(rows: list[Row]) -> None:
-    for row in rows:
+    for row in [*rows, check("sleep_storm", TALK)]:
         data = row.to_dict()
         assert list(data) == KEYS
         assert json.loads(json.dumps(data, allow_nan=False)) == data
     assert replace(rows[0], value=math.inf).to_dict()["value"] is None
+    dt = pytest.approx(1 / 60)
+    assert rows[0].settings == {"dt": dt, "substeps": 4, "iterations": 1}
+    assert rows[1].settings == {"dt": dt, "iterations": 10}
 
 
-def test_time_is_that_of_the_steps(rows: list[Row]) -> None:
-    assert all(0.0 < row.ms < 1000.0 for row in rows)
+def test_a_criterion_that_is_missed_ends_the_run(made_up: dict[str, Case]) -> None:
+    stage = open_stage(made_up["falls"], SOFT)
+    ((criterion, reading),) = stability.run(made_up["falls"], stage, SOFT)
+    assert not reading.passed
+    assert stage.world.time < 0.6  # of 9 s: 1 m is fallen in 0.45
+    assert criterion is made_up["falls"].criteria[0]
+    two = stability.run(made_up["two"], open_stage(made_up["two"], SOFT), SOFT)
+    assert [reading.passed for _, reading in two] == [True, False]
 
 
-def test_clock_counts_steps_alone() -> None:
-    world = World()
-    clock = Clock(world)
-    assert clock.ms_a_second() == 0.0
-    clock.step(0.1)
-    sum(range(2_000_000))  # not a step
-    assert world.time == pytest.approx(0.1)
-    assert clock.ms_a_second() > 0.0
+def test_each_criterion_is_read_at_its_time(made_up: dict[str, Case]) -> None:
+    assert check("holds", SOFT).value == pytest.approx(5.0, rel=0.02)
+    quarter = check("holds", Variant("soft_step", (), 4))
+    assert quarter.settings["dt"] == pytest.approx(1 / 240)
+    assert abs(quarter.value - 5.0) < 0.3 * abs(check("holds", SOFT).value - 5.0)  # g h t / 2
 
 
+@pytest.mark.usefixtures("made_up")
 def test_a_failed_step_is_lost(monkeypatch: pytest.MonkeyPatch) -> None:
     def fail(world: World, dt: float) -> None:
         raise StepError("body 1 is lost")
 
     monkeypatch.setattr(World, "step", fail)
-    row = check("stack_10", SOFT)
+    row = check("holds", SOFT)
     assert (row.passed, row.value, row.to_dict()["value"]) == (False, math.inf, None)
-    assert "lost" in as_text([row])
+
+
+@pytest.mark.usefixtures("made_up")
+def test_what_a_solver_refuses_is_not_applicable(monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse(error: type[Exception]) -> None:
+        raise error("the solver 'direct' takes at most 500 rows, and there are 5050")
+
+    row = check("restitution", TALK)
+    assert row.passed is None
+    assert "restitution" in row.claim
+    assert "sleep" in check("sleep_storm", TALK).claim
+    for error in (ValueError, StepError):
+        monkeypatch.setattr(World, "step", lambda world, dt, error=error: refuse(error))
+        assert check("holds", SOFT).passed is None
+
+
+@pytest.mark.usefixtures("made_up")
+def test_what_takes_too_long_is_not_applicable(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(stability, "LONGEST", -1.0)
+    row = check("holds", SOFT)
+    assert row.passed is None
+    assert "CPU time" in row.claim
+
+
+@pytest.mark.usefixtures("made_up")
+def test_the_deadline_ends_a_run_and_leaves_no_row() -> None:
+    with pytest.raises(OutOfTime):
+        check("holds", SOFT, time.time() - 1.0)
+    assert try_cell("holds", "soft_step", deadline=time.time() - 1.0) == []
 
 
 def test_what_is_missed_by_most_is_reported() -> None:
-    def measure(world: World) -> float:
-        return 0.0
-
-    criteria = [Criterion(name, measure, "m", 1.0, at_most=1.0) for name in "abc"]
+    criteria = [Criterion(name, fallen, "m", 1.0, at_most=1.0) for name in "abc"]
     good, bad, worse = Reading(0.5, -math.inf, 1.0), Reading(2.0, -math.inf, 1.0), Reading(9.0, -math.inf, 1.0)
-    assert worst(criteria, [good, bad, worse])[0].says == "c"
-    assert worst(criteria, [good, worse, bad])[0].says == "b"
-    assert worst(criteria, [good, good, good])[0].says == "a"
+    assert worst(list(zip(criteria, [good, bad, worse], strict=True)))[0].says == "c"
+    assert worst(list(zip(criteria, [good, worse, bad], strict=True)))[0].says == "b"
+    assert worst(list(zip(criteria, [good, good, good], strict=True)))[0].says == "a"
+
+
+# --- settings ---------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("solver", solvers())
+def test_every_solver_has_a_ladder_with_its_default_on_it(solver: str) -> None:
+    rungs = ladder(solver)
+    assert sum(variant.default for variant in rungs) == 1
+    assert len(rungs) >= 3
+    assert len({variant.label for variant in rungs}) == len(rungs)
+    assert {variant.solver for variant in rungs} == {solver}
+    if SOLVERS.get(solver) and SOLVERS[solver].has_substeps:
+        counts = [dict(variant.settings).get("substeps", SOLVERS[solver].substeps) for variant in rungs]
+        assert counts == sorted(counts)
+
+
+def climbed(passing: set[str], **options: bool) -> list[str]:
+    return [rung.label for rung in climb("soft_step", lambda rung: rung.label in passing, **options)]
+
+
+def test_climbs_down_while_it_passes_and_up_until_it_does() -> None:
+    every = {rung.label for rung in ladder("soft_step")}
+    assert climbed(every) == ["default", "substeps 2", "substeps 1"]
+    assert climbed(every - {"substeps 2"}) == ["default", "substeps 2"]
+    assert climbed({"substeps 8"}) == ["default", "substeps 8"]
+    assert climbed(set()) == ["default", "substeps 8", "substeps 16"]
+    assert climbed(every, defaults_only=True) == ["default"]
+    assert [rung.label for rung in climb("soft_step", lambda rung: None)] == ["default"]
+
+
+def test_the_cheapest_that_passes_is_that_of_least_time(rows: list[Row]) -> None:
+    quick, slow = replace(rows[0], ms=1.0), replace(rows[0], ms=2.0)
+    failed = replace(rows[1], ms=0.1)
+    assert cheapest([slow, failed, quick]) is quick
+    assert cheapest([failed]) is None
 
 
 def test_dominoes_reach_what_both_solvers_converge_to() -> None:
@@ -124,101 +195,71 @@ def test_dominoes_reach_what_both_solvers_converge_to() -> None:
         ({"substeps": 32, "precision": "double", "recycling": False}, 1),
         ({"solver": "sequential_impulses", "iterations": 40, "precision": "double"}, 8),
     ):
-        world = find_scene(CASES["dominoes"]).make(**settings)
+        world = find_scene("Stacking/Dominoes").make(**settings)
         for _ in range(round(WATCHED * 60) * parts):
             world.step(1 / 60 / parts)
         assert wave_front(world) == pytest.approx(REACHED, rel=0.02), settings
 
 
-# --- report -----------------------------------------------------------------------------------------------------------
+# --- other engines ----------------------------------------------------------------------------------------------------
 
 
-def test_text_says_what_holds_and_what_fails(rows: list[Row]) -> None:
-    text = as_text(rows)
-    assert text.count(" holds ") == 2
-    assert text.count(" fails ") == 2
-    assert "2 of 4 hold." in text
-    assert "With the defaults of soft_step: all hold." in text
-    assert "With the defaults of sequential_impulses: mass_ratio_400, overlap_recovery fail." in text
+@pytest.mark.parametrize("peer", PEERS)
+def test_a_peer_is_seen_through_a_world_of_ours(peer: str) -> None:
+    """Free fall, turning and sliding: where it is, how it moves and how deep it lies are the peer's own."""
+    stage = open_stage(CASES["stack_10"], Variant(peer))
+    assert isinstance(stage, PeerStage)
+    for _ in range(120):
+        stage.step(1 / 60)
+    assert stage.world.time == pytest.approx(2.0)
+    assert np.array_equal(stage.world.positions, stage._copy.positions())
+    deepest = stage.world.diagnostics().max_penetration
+    sunk = 9.5 - stage.world.positions[-1, 1]
+    assert 0.0 < deepest < sunk < 10.5 * deepest + 1e-3
+    stage.close()
 
 
-def test_page_has_a_line_a_run(rows: list[Row]) -> None:
-    page = as_markdown(rows)
-    assert sum(line.startswith("| soft_step") for line in page.splitlines()) == 2
-    assert page.count("**fails**") == 2
-    assert max(len(line) for line in page.splitlines() if not line.startswith("|")) <= 144
-    for line in page.splitlines():
-        assert line.count("|") in (0, 6)
+@pytest.mark.parametrize("peer", PEERS)
+def test_what_is_done_to_a_peer_is_done_to_its_picture(peer: str) -> None:
+    stage = open_stage(CASES["load_removed_20"], Variant(peer))
+    count = stage.world.body_count
+    stage.destroy(count - 1)
+    stage.set_gravity((0.0, 10.0))
+    for _ in range(30):
+        stage.step(1 / 60)
+    assert stage.world.body_count == count - 1
+    assert (stage.world.velocities[1:, 1] > 4.0).all()  # they fall upwards
+    stage.close()
+
+
+@pytest.mark.parametrize("peer", PEERS)
+def test_what_a_peer_cannot_have_is_not_applicable(peer: str) -> None:
+    assert [check(case, Variant(peer)).passed for case in ("cantilever", "create_and_destroy", "sleep_storm")] == [
+        None
+    ] * 3
+    assert check("mass_ratio_10", Variant(peer)).passed is not None
+
+
+def test_a_peer_is_as_the_world_it_mirrors() -> None:
+    """A box sinks in pyb2d3 as it does here: the same springs."""
+    ours, theirs = (check("single_box", Variant(solver)) for solver in ("soft_step", "pyb2d3"))
+    assert ours.passed
+    assert theirs.passed
+    assert isinstance(open_stage(CASES["single_box"], SOFT), OurStage)
+
+
+# --- broken solvers are caught ----------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(
-    ("variant", "text"),
+    ("setting", "case"),
     [
-        (SOFT, "soft_step"),
-        (Variant("soft_step", (("recycling", False),)), "soft_step, no recycling"),
-        (Variant("sequential_impulses", (("iterations", 40),)), "sequential_impulses, iterations 40"),
-        (Variant("sequential_impulses", (), 4), "sequential_impulses, dt 1/240"),
+        ("recycling", "stack_20"),
+        ("warm_starting", "card_house"),
+        ("position_correction", "overlap_recovery"),
+        ("continuous", "tunnelling_1000"),
     ],
 )
-def test_settings_are_named(variant: Variant, text: str) -> None:
-    assert settings_of(variant) == text
-
-
-# --- the command ------------------------------------------------------------------------------------------------------
-
-
-@pytest.fixture
-def few(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The command, with the defaults only."""
-    monkeypatch.setattr(stability, "VARIANTS", (SOFT, TALK))
-
-
-@pytest.mark.usefixtures("few")
-def test_command_writes_json_and_page(tumble: Tumble, tmp_path: Path) -> None:
-    folder, file = tmp_path / "new" / "folder", tmp_path / "rows.json"
-    code, out, _ = tumble("stability", "mass_ratio_400", "-o", folder, "--json", file)
-    assert code == 0  # the talk's solver fails, and it is not what a world has by default
-    assert "1 of 2 hold" in out
-    data = json.loads(file.read_text())
-    assert [(row["case"], row["solver"], row["default"], row["passed"]) for row in data] == [
-        ("mass_ratio_400", "soft_step", True, True),
-        ("mass_ratio_400", "sequential_impulses", True, False),
-    ]
-    assert all(list(row) == KEYS for row in data)
-    assert [path.name for path in folder.iterdir()] == ["stability.md"]
-
-
-@pytest.mark.usefixtures("few")
-def test_exit_code_tells_if_a_default_fell(tumble: Tumble, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("sandbox.verbs.stability.check_all", lambda cases, progress: FAKES)
-    code, out, _ = tumble("stability", "--json", "-")
-    assert code == 1
-    assert len(json.loads(out)) == len(FAKES)
-
-
-CRITERION = Criterion("it sinks by", lambda world: 0.0, "m", 1.0, at_most=1.0)
-FAKES = [
-    Row("arch", "soft_step", {}, True, False, 2.0, 1.0, "m", 1.0, CRITERION, Reading(2.0, -math.inf, 1.0), SOFT),
-]
-
-
-def test_check_all_runs_case_after_case(monkeypatch: pytest.MonkeyPatch) -> None:
-    seen = []
-    monkeypatch.setattr(stability, "VARIANTS", (SOFT, TALK))
-    monkeypatch.setattr(stability, "check", lambda case, variant: seen.append((case, variant)))
-    told: list[int] = []
-    check_all(["arch", "pyramid"], lambda: told.append(1))
-    assert seen == [("arch", SOFT), ("arch", TALK), ("pyramid", SOFT), ("pyramid", TALK)]
-    assert len(told) == 4
-
-
-@pytest.mark.parametrize("name", ["stack_11", "Pyramid", "", "x" * 10_000, "arch\npyramid"])
-def test_unknown_case_is_one_short_line(tumble: Tumble, name: str) -> None:
-    line = one_line(tumble("stability", "arch", name))
-    assert "there is no case" in line
-    assert len(line) < 300
-
-
-def test_folder_that_cannot_be_made_is_one_line(tumble: Tumble, tmp_path: Path) -> None:
-    (tmp_path / "file").write_text("")
-    assert "cannot be made" in one_line(tumble("stability", "arch", "-o", tmp_path / "file" / "folder"))
+def test_a_solver_without_a_part_of_it_is_caught(setting: str, case: str) -> None:
+    """What the cases are worth: each sees that something is missing."""
+    assert check(case, Variant("soft_step", ((setting, False),))).passed is False
