@@ -33,8 +33,8 @@ pictures: $(STAMP) ## make the pictures of the documents again
 	$(VENV)/bin/python -m tests.pictures
 
 tables: $(STAMP) ## measure the documents' tables and diagrams again, on a quiet machine
-	$(VENV)/bin/tumble accuracy -o docs
-	$(VENV)/bin/tumble stability -o docs
+	$(VENV)/bin/tumble accuracy --peers -o docs
+	$(VENV)/bin/tumble stability --peers -o docs
 	$(VENV)/bin/tumble effects "The Talk/Pyramid" "Effects/Wind" --markdown docs/effects.md
 
 golden: $(STAMP) ## write the golden hashes again, after a change of behaviour that was meant
@@ -52,7 +52,7 @@ lock: ## choose the newest versions that pyproject.toml allows: writes constrain
 	@$(find_python); \
 	folder=$$(mktemp -d) && trap 'rm -rf "$$folder"' EXIT && \
 	"$$python" -m venv "$$folder" && \
-	"$$folder/bin/python" -m pip install --quiet --disable-pip-version-check '.[dev,peers]' && \
+	"$$folder/bin/python" -m pip install --quiet --disable-pip-version-check '.[dev,peers,dask]' && \
 	{ printf '%s\n' \
 	    '# The exact version of every package that tumble and its tests run with. Made by `make lock`; not edited by hand.' \
 	    '# pyproject.toml names what is asked for directly; the rest is what those bring along.'; \

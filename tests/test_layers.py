@@ -31,8 +31,8 @@ EXCEPTIONS = {
     # The command line wires everything together ...
     "sandbox/cli.py": {"web", "recordings", "viser", "rerun"},
     "sandbox/verbs/": {"web", "recordings", "viser", "rerun"},
-    # ... and the laboratory draws diagrams, and compares with engines that are an extra.
-    "sandbox/lab/": {"pyb2d3", "pymunk", "matplotlib"},
+    # ... and the laboratory draws diagrams, and compares with engines, and asks clusters, that are extras.
+    "sandbox/lab/": {"pyb2d3", "pymunk", "matplotlib", "distributed"},
 }
 
 

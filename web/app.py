@@ -36,7 +36,7 @@ class App:
         self._page = Page(_view_of, host, port)
         self.url = self._page.url
         self._closed = False
-        desk = Desk(self._page, session, measure_effects)
+        self._desk = desk = Desk(self._page, session, measure_effects)
         panels = [kind(desk) for kind in PANELS]
         spawn = next(panel for panel in panels if isinstance(panel, SpawnPanel))
         joints = next(panel for panel in panels if isinstance(panel, JointsPanel))
@@ -53,6 +53,7 @@ class App:
     def close(self) -> None:
         if not self._closed:
             self._closed = True
+            self._desk.closing.set()
             self._page.close()
 
 

@@ -29,7 +29,8 @@ class Layer(IntEnum):
     IMPULSE = 9
     CONTACT = 10
     HIT = 11
-    HAND = 12
+    GHOST = 12
+    HAND = 13
 
 
 @dataclass(frozen=True)

@@ -63,7 +63,7 @@ def test_run_ends_cleanly(number: signal.Signals, tmp_path: Path) -> None:
     process.send_signal(number)
     code, _, err = ended(process)
     assert time.perf_counter() - asked < 0.5 * PATIENCE
-    assert code == 0
+    assert code == 0, err
     assert "rror" not in err
 
 

@@ -22,7 +22,8 @@ from tests.engine.trajectories import Reference, load, row
 from tests.sandbox.watching import PRECISIONS
 
 TALK = "sequential_impulses"
-FOLDERS = ("The Talk", "Stacking", "Shapes", "Effects", "Joints", "Continuous", "Events", "Sleeping", "Benchmark")
+FOLDERS = ("The Talk", "Stacking", "Shapes", "Effects", "Joints", "Continuous", "Events", "Sleeping",
+           "Robustness", "Benchmark")  # fmt: skip
 BEFORE, STEPS = 60, 60  # that a recording begins, and that are in it
 FEW = 4  # of both, of thousands of bodies
 CRITERION = Criterion("it is at", lambda world: 0.0, "m", 1.0, at_most=1.0)

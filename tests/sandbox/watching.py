@@ -137,7 +137,7 @@ class LivelyHands:
         return ask.Set("iterations", int(self._rng.integers(1, 15)))
 
     def _solver(self) -> ask.Set:
-        return ask.Set("solver", self._pick(tuple(SOLVERS)))
+        return ask.Set("solver", self._pick(tuple(name for name in SOLVERS if name != "direct")))
 
     def _grab(self) -> ask.Grab:
         x, y = self._pick(self._positions)

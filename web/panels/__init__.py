@@ -1,12 +1,13 @@
 """The folders of the control panel, in their order. A further one is one more file and one more line here."""
 
-from web.panels.accuracy import AccuracyPanel
+from web.panels.comparing import ComparingPanel
 from web.panels.desk import Desk, Panel
 from web.panels.drive import DrivePanel
 from web.panels.effects import EffectsPanel
 from web.panels.events import EventsPanel
 from web.panels.help import HelpPanel
 from web.panels.joints import JointsPanel
+from web.panels.laboratory import LaboratoryPanel
 from web.panels.physics import PhysicsPanel
 from web.panels.plots import PlotsPanel
 from web.panels.recording import RecordingPanel
@@ -24,9 +25,10 @@ PANELS: tuple[type[Panel], ...] = (
     PhysicsPanel,
     EffectsPanel,
     EventsPanel,
-    AccuracyPanel,
+    ComparingPanel,
     ViewPanel,
     PlotsPanel,
+    LaboratoryPanel,
     HelpPanel,
     RecordingPanel,
 )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import html
+import threading
 import time
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, Protocol
@@ -39,6 +40,7 @@ class Desk:
         self.measure_effects = measure_effects  # None: nothing here can measure them
         self.gui = page.gui
         self.session = session
+        self.closing = threading.Event()  # set when the page closes: what runs in the background ends
         self.hud = add_hud(page.gui)  # for what one watches, apart from what one sets
 
     def submit(self, make: Make) -> None:

@@ -32,6 +32,15 @@ class PeerWorld(Protocol):
         """Frees what it holds; it is not stepped again."""
 
 
+class WatchedWorld(PeerWorld, Protocol):
+    """One that tells all of how its bodies move, too."""
+
+    def motions(self) -> np.ndarray:
+        """(N, 6) of the bodies: x, y [m], angle [rad], unwrapped or within half a turn, and the centre's vx, vy [m/s],
+        w [rad/s].
+        """
+
+
 class Peer(Protocol):
     """Another engine. Making one raises PeerError if it is not to be had here."""
 

@@ -93,6 +93,12 @@ class Pyb2d3World:
     def positions(self) -> np.ndarray:
         return self.batch.get_positions().astype(np.float64).reshape(-1, 2)
 
+    def motions(self) -> np.ndarray:
+        batch = self.batch  # its get_transforms writes beyond the array that it makes
+        turns = batch.get_rotations().astype(np.float64).reshape(-1, 2)  # cosine, sine
+        velocities = batch.get_linear_velocities().reshape(-1, 2), batch.get_angular_velocities().reshape(-1)
+        return np.column_stack([self.positions(), np.arctan2(turns[:, 1], turns[:, 0]), *velocities])
+
     def close(self) -> None:
         if self.world.is_valid():
             self.world.destroy()

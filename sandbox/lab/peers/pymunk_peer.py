@@ -92,6 +92,10 @@ class PymunkWorld:
     def positions(self) -> np.ndarray:
         return np.array([tuple(body.position) for body in self.bodies]).reshape(-1, 2)
 
+    def motions(self) -> np.ndarray:
+        rows = [(*b.position, b.angle, *b.velocity, b.angular_velocity) for b in self.bodies]
+        return np.array(rows, np.float64).reshape(-1, 6)
+
     def close(self) -> None:
         pass
 

@@ -1,57 +1,123 @@
-"""`tumble accuracy`: rows, report, picture, and the command."""
+"""`tumble accuracy`: what is swept, rows and their costs, the budget, workers that die, and the command."""
 
 from __future__ import annotations
 
 import json
 import math
+import os
+import signal
+import time
+from collections.abc import Iterator
+from concurrent.futures.process import BrokenProcessPool
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
-from PIL import Image
 
-from engine import World
-from sandbox.lab import accuracy, accuracy_picture
-from sandbox.lab.accuracy import SERIES, Row, Series, Setting, measure, over, passes, runs_of
-from sandbox.lab.accuracy_picture import LEAST, LINES, draw, labels
-from sandbox.lab.accuracy_report import as_markdown, as_text, measure_of
+from engine import SOLVERS, Circle, Settings, World
+from sandbox.lab.accuracy import (
+    KEYS,
+    Outcome,
+    Point,
+    Row,
+    Series,
+    Setting,
+    all_series,
+    over,
+    passes,
+    plan,
+    series_of,
+    sweep,
+)
+from sandbox.lab.accuracy.runs import begin, cost, follow
+from sandbox.lab.accuracy.series import missing, peer_series
+from sandbox.lab.accuracy.tasks import measure
+from sandbox.lab.accuracy.workers import Cluster, Processes, Threads
 from sandbox.lab.experiments import EXPERIMENTS
-from tests.sandbox.commandline import Tumble, one_line
-from web import theme
+from tests.sandbox.commandline import Tumble, one_line, usage_error
 
 TINY = (
     Series("soft_step, substeps", "soft_step", over("substeps", (1, 4))),
     Series("sequential_impulses, iterations", "sequential_impulses", over("iterations", (1,))),
 )
-KEYS = ["scene", "solver", "settings", "precision", "measure", "error", "cost_ms", "solves"]
+SLIDING, BOUNCE = EXPERIMENTS["sliding"], EXPERIMENTS["bounce"]
 
 
 @pytest.fixture
 def tiny(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The command, with next to nothing to measure."""
-    monkeypatch.setattr("sandbox.verbs.accuracy.SERIES", TINY)
+    """The command, with next to nothing to measure, in this process."""
+    monkeypatch.setattr("sandbox.verbs.accuracy.all_series", lambda *names: TINY)
+    monkeypatch.setattr("sandbox.verbs.accuracy.Processes", Threads)
 
 
 @pytest.fixture(scope="module")
-def rows() -> list[Row]:
-    told: list[int] = []
-    experiments = [EXPERIMENTS["sliding"], EXPERIMENTS["bounce"]]
-    found = measure(experiments, TINY, repeats=1, progress=lambda: told.append(1))
-    assert len(told) == runs_of(experiments, TINY, 1) == 2 * (3 + 2)
+def outcome() -> Outcome:
+    told: list[tuple[int, int]] = []
+    found = sweep(
+        [SLIDING, BOUNCE], TINY, Threads(), repeats=2, progress=lambda done, total, _: told.append((done, total))
+    )
+    assert told[-1] == (5, 5)
     return found
 
 
-def test_a_row_a_setting_and_measure(rows: list[Row]) -> None:
-    found = [(row.scene, row.solver, row.label) for row in rows]
-    assert found == [
+@pytest.fixture(scope="module")
+def rows(outcome: Outcome) -> list[Row]:
+    return outcome.rows
+
+
+# --- what is swept ----------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", SOLVERS)
+def test_lines_follow_from_what_a_solver_has(name: str) -> None:
+    solver = SOLVERS[name]
+    lines = series_of(solver)
+    varied = [line.name.removeprefix(f"{name}, ") for line in lines]
+    assert ("substeps" in varied) == solver.has_substeps
+    assert "steps in 1/60 s" in varied
+    assert {line.precision for line in lines} == {"single", "double"}
+    assert ("substeps" in missing(name)) == (not solver.has_substeps)
+    found = [(setting.dt, line.world(setting).settings) for line in lines for setting in line.settings]
+    assert all(found.count(one) == 1 for one in found)  # each is run once
+    assert any(dt == 1 / 60 and settings == Settings(sleeping=False, solver=name) for dt, settings in found)
+
+
+def test_a_new_solver_appears_by_itself(monkeypatch: pytest.MonkeyPatch) -> None:
+    new = replace(SOLVERS["soft_step"], name="new")
+    monkeypatch.setitem(SOLVERS, "new", new)
+    assert any(line.solver == "new" for line in all_series(SOLVERS))
+
+
+def test_coarse_settings_of_all_come_before_finer_ones_of_any() -> None:
+    tasks = list(plan([SLIDING, BOUNCE], all_series(["soft_step"])))
+    assert [task.level for task in tasks] == sorted(task.level for task in tasks)
+    assert {task.scene for task in tasks if task.level == 0} == {"sliding", "bounce"}
+    coarse = {point.setting.label for task in tasks if task.level == 0 for point in task.points}
+    assert coarse == {"1", "4", "16"}
+
+
+def test_a_peer_has_its_own_knob() -> None:
+    assert [line.name for line in peer_series("pymunk")] == ["pymunk, iterations", "pymunk, steps in 1/60 s"]
+    assert "iterations" in missing("pyb2d3")
+
+
+# --- rows -------------------------------------------------------------------------------------------------------------
+
+
+def test_a_row_a_setting_and_measure(outcome: Outcome) -> None:
+    assert [(row.scene, row.solver, row.label) for row in outcome.rows] == [
         ("sliding", "soft_step", "1"),
         ("sliding", "soft_step", "4"),
         ("sliding", "sequential_impulses", "1"),
-        ("bounce", "soft_step", "1"),  # sequential_impulses have no restitution
+        ("bounce", "soft_step", "1"),
         ("bounce", "soft_step", "4"),
     ]
-    assert all(row.cost_ms > 0 for row in rows)
-    assert rows[0].error > 3 * rows[1].error
+    assert outcome.refused == {("bounce", "sequential_impulses"): "it has no restitution"}
+    assert all(row.cost_ms > 0 and row.spread_ms >= 0 for row in outcome.rows)
+    assert outcome.rows[0].error > 3 * outcome.rows[1].error
+    assert not outcome.left
+    assert not outcome.failures
 
 
 def test_settings_say_what_it_was_run_with(rows: list[Row]) -> None:
@@ -59,6 +125,9 @@ def test_settings_say_what_it_was_run_with(rows: list[Row]) -> None:
     assert rows[1].settings == {"dt": dt, "substeps": 4, "iterations": 1, "stiffness": "follows"}
     assert rows[2].settings == {"dt": dt, "iterations": 1}
     assert {row.precision for row in rows} == {"single"}
+    assert [row.setting for row in rows[:3]] == ["1 substeps", "4 substeps", "1 iterations"]
+    many = replace(rows[1], settings={**rows[1].settings, "iterations": 2, "dt": 1 / 240}, precision="double")
+    assert many.setting == "4 substeps, 2 iterations, dt 1/240, double"
 
 
 def test_solves_are_passes_times_contacts(rows: list[Row]) -> None:
@@ -83,70 +152,194 @@ def test_passes(settings: dict, count: int) -> None:
 
 def test_shorter_steps_are_more_of_them() -> None:
     series = Series("", "sequential_impulses", (Setting("4", {"iterations": 1}, 4),))
-    (row,) = measure([EXPERIMENTS["sliding"]], [series], repeats=0 + 1, progress=lambda: None)
+    (row,) = sweep([SLIDING], [series], Threads(), repeats=1).rows
     assert row.settings["dt"] == pytest.approx(1 / 240)
     assert row.solves == pytest.approx(4 * 60 * 2 * 180, rel=0.02)
 
 
-def test_the_default_covers_both_solvers_and_precisions() -> None:
-    assert {series.solver for series in SERIES} == {"soft_step", "sequential_impulses"}
-    assert {series.precision for series in SERIES} == {"single", "double"}
-    substeps = next(series for series in SERIES if series.name == "soft_step, substeps")
-    assert [setting.world["substeps"] for setting in substeps.settings] == [1, 2, 4, 8, 16, 32]
-    assert {setting.steps for series in SERIES for setting in series.settings} > {1, 2, 4}
-    assert len(SERIES) <= len(LINES)
+def test_a_lost_run_has_no_error(monkeypatch: pytest.MonkeyPatch) -> None:
+    def build(world: World) -> Any:
+        world.create_body(Circle(0.5))
+
+        def watch(world: World) -> Any:
+            world._state.bodies.tables["motions"]["vx"][0] = math.nan
+            return world.positions[0]
+
+        return watch
+
+    lost = replace(SLIDING, build=build)
+    monkeypatch.setitem(EXPERIMENTS, "sliding", lost)
+    outcome = sweep([lost], TINY[:1], Threads(), repeats=1)
+    assert [row.error for row in outcome.rows] == [math.inf, math.inf]
+    assert {row.to_dict()["error"] for row in outcome.rows} == {None}
+
+
+def test_what_is_timed_is_the_run_that_was_watched() -> None:
+    """Taken back to its start it goes the same way: bit by bit."""
+    for solver in SOLVERS:
+        run = begin(EXPERIMENTS["pendulum"], Point(Series("", solver, ()), Setting("", {})))
+        followed = follow(run)
+        ended = run.world.state_hash()
+        assert cost(run) > 0
+        assert run.world.state_hash() == ended
+        assert len(followed.history) == run.world.step_count
+
+
+def test_what_a_solver_refuses_is_not_applicable(monkeypatch: pytest.MonkeyPatch) -> None:
+    refused = replace(SLIDING, build=lambda world: world.set(substeps=7))
+    monkeypatch.setitem(EXPERIMENTS, "sliding", refused)
+    outcome = sweep([refused], TINY[1:], Threads(), repeats=1)
+    assert not outcome.rows
+    assert "substeps = 7" in outcome.refused["sliding", "sequential_impulses"]
 
 
 def test_json_has_these_keys(rows: list[Row]) -> None:
+    assert KEYS == ("scene", "solver", "settings", "precision", "measure", "error", "cost_ms", "solves")
     for row in rows:
         data = row.to_dict()
-        assert list(data) == KEYS
+        assert tuple(data) == KEYS
         assert json.loads(json.dumps(data, allow_nan=False)) == data
 
 
-def test_an_error_that_is_not_finite_is_null(rows: list[Row]) -> None:
-    assert replace(rows[0], error=math.inf).to_dict()["error"] is None
+# --- the budget and those who work ------------------------------------------------------------------------------------
 
 
-# --- report and picture -----------------------------------------------------------------------------------------------
+class Slow(Threads):
+    """Each task takes a while before it begins."""
+
+    def submit(self, function: Any, *arguments: Any) -> Any:
+        time.sleep(0.3)
+        return super().submit(function, *arguments)
 
 
-def test_text_has_every_measure_and_error(rows: list[Row]) -> None:
-    text = as_text(rows)
-    for row in rows:
-        assert measure_of(row.scene, row.measure).says in text
-        assert f"{row.error:.1e}" in text
-        assert row.series in text
-    assert "lost" in as_text([replace(rows[0], error=math.inf)])
+def test_the_budget_is_kept_and_what_was_left_out_is_counted() -> None:
+    series = all_series(["soft_step", "sequential_impulses"])
+    started = time.monotonic()
+    outcome = sweep([SLIDING, BOUNCE], series, Slow(), seconds=0.4, repeats=1)
+    assert time.monotonic() - started < 20
+    total = sum(len(task.points) for task in plan([SLIDING, BOUNCE], series))
+    assert len(outcome.rows) + sum(outcome.left.values()) == total
+    assert sum(outcome.left.values()) > total / 2
 
 
-def test_page_shows_the_picture_and_every_row(rows: list[Row]) -> None:
-    page = as_markdown(rows)
-    assert "](accuracy.png)" in page
-    assert sum(line.startswith("| soft_step") for line in page.splitlines()) == 4
-    assert max(len(line) for line in page.splitlines() if not line.startswith("|")) <= 144
+def test_a_task_without_time_measures_nothing() -> None:
+    task = next(plan([SLIDING], TINY))
+    result = measure(task, -1.0)
+    assert not result.rows
+    assert result.left == len(task.points)
 
 
-def test_picture_is_drawn(rows: list[Row], tmp_path: Path) -> None:
-    draw([*rows, replace(rows[0], error=0.0), replace(rows[1], error=math.inf)], tmp_path / "picture.png")
-    with Image.open(tmp_path / "picture.png") as picture:
-        assert picture.width > 1000
-        colours = {colour for _, colour in picture.convert("RGB").getcolors(1 << 24)}  # type: ignore[misc, union-attr]
-    for line in LINES[:2]:
-        assert tuple(bytes.fromhex(line[1:])) in colours
+def test_a_run_that_takes_too_long_is_left_out(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("sandbox.lab.accuracy.tasks.LONGEST", -1.0)
+    outcome = sweep([SLIDING], TINY[:1], Threads(), repeats=1)
+    assert not outcome.rows
+    assert sum(outcome.left.values()) == 2
 
 
-def test_labels_do_not_lie_on_each_other(rows: list[Row]) -> None:
-    row = replace(rows[0], cost_ms=2.0, error=0.1)
-    near, far, none = replace(row, error=0.1001, label="b"), replace(row, error=0.2, label="c"), replace(row, error=0.0)
-    assert [label for _, label in labels([row, near, far])] == ["1", "c"]
-    assert labels([none])[0][0] == (2.0, LEAST)
+def test_a_slow_run_is_timed_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("sandbox.lab.accuracy.tasks.ONCE", 0.0)
+    outcome = sweep([SLIDING], TINY[:1], Threads(), repeats=3)
+    assert [row.spread_ms for row in outcome.rows] == [0.0, 0.0]
 
 
-def test_colours_are_the_pages() -> None:
-    assert "#{:02x}{:02x}{:02x}".format(*theme.BACKDROP) == accuracy_picture.BACKDROP
-    assert set(LINES) <= set(theme.PLOT_LINES)
-    assert (accuracy_picture.TEXT, accuracy_picture.GRID) == (theme.PLOT_TEXT, theme.PLOT_GRID)
+def test_what_a_scene_is_compared_with_is_made_first_and_once() -> None:
+    made: list[str] = []
+    compared = replace(SLIDING, prepare=lambda: made.append("sliding"))
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setitem(EXPERIMENTS, "sliding", compared)
+        assert len(sweep([compared, BOUNCE], TINY[:1], Threads(), repeats=1).rows) == 4
+        assert made == ["sliding"]
+        patch.setitem(EXPERIMENTS, "sliding", replace(compared, prepare=lambda: 1 / 0))
+        outcome = sweep([EXPERIMENTS["sliding"], BOUNCE], TINY[:1], Threads(), repeats=1)
+    assert {row.scene for row in outcome.rows} == {"bounce"}
+    assert outcome.failures == ["sliding: ZeroDivisionError: division by zero"]
+    assert sum(outcome.left.values()) == 2
+
+
+class Dying(Threads):
+    """The worker dies at some tasks, as a process does that was killed."""
+
+    def __init__(self, deaths: int) -> None:
+        super().__init__()
+        self.deaths, self.restarts = deaths, 0
+
+    def submit(self, function: Any, *arguments: Any) -> Any:
+        if self.deaths:
+            self.deaths -= 1
+            return super().submit(_die)
+        return super().submit(function, *arguments)
+
+    def restart(self) -> None:
+        self.restarts += 1
+
+
+def _die() -> None:
+    raise BrokenProcessPool("a process in the process pool was terminated abruptly")
+
+
+def test_a_task_whose_worker_died_is_given_to_another() -> None:
+    outcome = sweep([SLIDING], TINY, Dying(1), repeats=1)
+    assert len(outcome.rows) == 3
+    assert not outcome.failures
+
+
+def test_a_task_that_kills_two_workers_is_left_out_and_named() -> None:
+    outcome = sweep([SLIDING], TINY, Dying(2), repeats=1)
+    assert len(outcome.rows) + sum(outcome.left.values()) == 3
+    assert outcome.failures == ["sliding: its worker died, and another one with it"]
+
+
+def test_what_a_worker_raises_is_a_line_and_the_others_go_on(monkeypatch: pytest.MonkeyPatch) -> None:
+    def build(world: World) -> Any:
+        raise RuntimeError("first\nsecond") if world.iterations == 1 and world.substeps == 1 else ValueError("no")
+
+    broken = replace(SLIDING, build=build)
+    monkeypatch.setitem(EXPERIMENTS, "sliding", broken)
+    outcome = sweep([broken], TINY[:1], Threads(), repeats=1)
+    assert outcome.failures == ["sliding, soft_step, substeps 1: RuntimeError: first"]
+
+
+def test_processes_measure_and_survive_a_kill() -> None:
+    """One sweep in real processes, of which one is killed as soon as it is there."""
+    workers = _Killed(1)
+    outcome = sweep([SLIDING], TINY[:1], workers, repeats=1)
+    assert workers.killed
+    assert [row.label for row in outcome.rows] == ["1", "4"]
+    assert [row.solves for row in outcome.rows] == [
+        row.solves for row in sweep([SLIDING], TINY[:1], Threads(), repeats=1).rows
+    ]
+
+
+class _Killed(Processes):
+    killed = False
+
+    def submit(self, function: Any, *arguments: Any) -> Any:
+        future = super().submit(function, *arguments)
+        if not self.killed:
+            self.killed = True
+            for number in list(self._executor._processes or {}):
+                os.kill(number, signal.SIGKILL)
+        return future
+
+
+@pytest.fixture(scope="module")
+def cluster() -> Iterator[str]:
+    """The address of a Dask cluster on this machine, of one worker with two threads."""
+    distributed = pytest.importorskip("distributed")
+    local = distributed.LocalCluster(
+        n_workers=1, threads_per_worker=2, processes=False, dashboard_address=None, protocol="tcp", host="127.0.0.1"
+    )  # fmt: skip
+    with local:
+        yield local.scheduler_address
+
+
+def test_a_cluster_measures_the_same(cluster: str, rows: list[Row]) -> None:
+    workers = Cluster(cluster)
+    assert workers.slots == 1  # however many threads it has: timed runs must not disturb each other
+    found = sweep([SLIDING], TINY, workers, repeats=1).rows
+    assert [(row.series, row.label, row.error, row.solves) for row in found] == [
+        (row.series, row.label, row.error, row.solves) for row in rows if row.scene == "sliding"
+    ]
 
 
 # --- the command ------------------------------------------------------------------------------------------------------
@@ -158,13 +351,28 @@ def test_command_writes_json_and_folder(tumble: Tumble, tmp_path: Path) -> None:
     code, out, _ = tumble("accuracy", "ballistic", "sliding", "-o", folder, "--json", file)
     assert code == 0
     assert "ballistic" in out
+    assert "[m]" in out
     data = json.loads(file.read_text())
     assert [(row["scene"], row["measure"]) for row in data[::3]] == [
         ("ballistic", "height [m]"),
         ("sliding", "distance [m]"),
     ]
-    assert all(list(row) == KEYS for row in data)
-    assert sorted(path.name for path in folder.iterdir()) == ["accuracy.md", "accuracy.png"]
+    assert all(tuple(row) == KEYS for row in data)
+    assert sorted(path.name for path in folder.iterdir()) == ["accuracy", "accuracy.html", "accuracy.md"]
+    pictures = ["ballistic.png", "ballistic.svg", "sliding.png", "sliding.svg"]
+    assert sorted(path.name for path in (folder / "accuracy").iterdir()) == pictures
+
+
+@pytest.mark.usefixtures("tiny")
+def test_command_keeps_what_is_written_by_hand(tumble: Tumble, tmp_path: Path) -> None:
+    page = tmp_path / "accuracy.md"
+    page.write_text("Words.\n<!-- tumble accuracy -->\nfrom before\n<!-- end of tumble accuracy -->\nMore words.\n")
+    assert tumble("accuracy", "ballistic", "-o", tmp_path)[0] == 0
+    text = page.read_text()
+    assert text.startswith("Words.\n")
+    assert text.endswith("\nMore words.\n")
+    assert "from before" not in text
+    assert "| ballistic" in text
 
 
 @pytest.mark.usefixtures("tiny")
@@ -178,17 +386,48 @@ def test_json_on_standard_output_stands_alone(tumble: Tumble) -> None:
 def test_unknown_scene_is_one_short_line(tumble: Tumble, name: str) -> None:
     line = one_line(tumble("accuracy", "bounce", name))
     assert "there is no scene" in line
-    assert len(line) < 300
+    assert len(line) < 600
 
 
 def test_a_close_name_is_offered(tumble: Tumble) -> None:
     assert "did you mean 'ballistic'?" in one_line(tumble("accuracy", "balistic"))
+    assert "did you mean 'soft_step'?" in one_line(tumble("accuracy", "--solvers", "soft"))
+
+
+@pytest.mark.parametrize("budget", ["0", "-1", "nan", "inf", "soon", "1e7"])
+def test_a_wrong_budget_is_one_line(tumble: Tumble, budget: str) -> None:
+    assert "must be seconds above 0" in usage_error(tumble("accuracy", f"--budget={budget}"))
+
+
+@pytest.mark.parametrize("address", ["tcp://127.0.0.1:1", "nonsense", "", "tcp://127.0.0.1:999999", "bogus://x:1"])
+def test_a_cluster_that_is_not_there_is_one_line(tumble: Tumble, address: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("sandbox.lab.accuracy.workers.CONNECTING", 0.5)
+    assert f"--dask {address}: no Dask scheduler answers there" in one_line(tumble("accuracy", "--dask", address))
 
 
 @pytest.mark.usefixtures("tiny")
-def test_folder_that_cannot_be_made_is_one_line_and_measures_nothing(
+def test_no_time_for_a_single_run_is_one_line(tumble: Tumble) -> None:
+    code, out, err = tumble("accuracy", "ballistic", "--budget", "1e-6")
+    assert (code, out) == (2, "")
+    assert err.splitlines()[-1].endswith(
+        "nothing was measured: there was no time for a single run: give it more (--budget)"
+    )
+
+
+@pytest.mark.usefixtures("tiny")
+def test_what_no_solver_can_run_is_one_line(tumble: Tumble, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("sandbox.verbs.accuracy.all_series", lambda *names: TINY[1:])
+    code, out, err = tumble("accuracy", "bounce")
+    assert (code, out) == (2, "")
+    assert err.splitlines()[-1].endswith("nothing was measured: it has no restitution")
+
+
+@pytest.mark.usefixtures("tiny")
+def test_folder_that_cannot_be_used_is_one_line_and_measures_nothing(
     tumble: Tumble, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     (tmp_path / "file").write_text("")
-    monkeypatch.setattr(accuracy, "watch", None)
+    monkeypatch.setattr("sandbox.verbs.accuracy.sweep", None)
     assert "cannot be made" in one_line(tumble("accuracy", "-o", tmp_path / "file" / "folder"))
+    (tmp_path / "accuracy.md").write_text("a page without the marks")
+    assert "must have the lines" in one_line(tumble("accuracy", "-o", tmp_path))

@@ -3,46 +3,89 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
-from engine import SOLVERS, World
-from sandbox.lab.accuracy import Point, Series, Setting, watch
-from sandbox.lab.experiments import (
-    AMPLITUDE,
-    DROPS,
-    EXPERIMENTS,
+from engine import EFFECTS, SOLVERS, StepError
+from sandbox.lab import experiments
+from sandbox.lab.experiments import CONVERGED, EXPERIMENTS, Measure, experiment
+from sandbox.lab.experiments.beams import MOMENTS, SHEARS
+from sandbox.lab.experiments.bouncing import DROPS, RESTITUTION, apex_error, vertex
+from sandbox.lab.experiments.experiment import G
+from sandbox.lab.experiments.flight import (
+    DRIFT,
     FLIGHT,
-    MASSES,
-    PERIOD,
-    RESTITUTION,
+    OFFSET,
+    SPIN,
     THROWN_AT,
-    G,
-    apex_error,
+    angular_momentum,
     flight_error,
-    impulse_error,
+    spin_errors,
+)
+from sandbox.lab.experiments.impacts import (
+    AFTER,
+    APPROACH,
+    DISC_RADII,
+    GAPS,
+    SPEEDS,
+    momentum_error,
+    places_error,
+    shot_errors,
+    speeds_error,
+)
+from sandbox.lab.experiments.joined import tension_error
+from sandbox.lab.experiments.resting import MASSES, force_error, impulse_error
+from sandbox.lab.experiments.slopes import ANGLES, FALLS, acceleration_error, slide_error, wedge_errors
+from sandbox.lab.experiments.swinging import (
+    AMPLITUDE,
+    OMEGA,
+    PERIOD,
+    SPRINGS,
+    STRETCHED,
     period_error,
-    vertex,
+    spring_error,
+    spring_period_error,
+    swing_energy_error,
     zero_crossings,
 )
+from tests.sandbox.lab.experimenting import able, error_of, errors_of, predicted, scale_of
 
 DT = 1 / 60
+EXACTLY = {name: one for name, one in EXPERIMENTS.items() if name not in CONVERGED}
+
+# --- what an experiment is --------------------------------------------------------------------------------------------
 
 
-def error_of(experiment: str, measure: int, solver: str = "soft_step", steps: int = 1, **settings: object) -> float:
-    """Error with some settings, and what was predicted, in parts of that."""
-    setting = Setting("", settings, steps)
-    series = Series("", solver, (setting,), "double")
-    history, _ = watch(EXPERIMENTS[experiment], Point(series, setting))
-    return EXPERIMENTS[experiment].measures[measure].error(history, setting.dt)
+def test_every_family_is_listed() -> None:
+    files = {path.stem for path in Path(experiments.__file__).parent.glob("*.py")} - {"__init__", "experiment"}
+    assert files <= set(experiments.__all__)
+    assert {build.build.__module__.rpartition(".")[2] for build in EXPERIMENTS.values()} >= files
 
 
-def predicted(experiment: str, measure: int, solver: str = "soft_step", steps: int = 1, **settings: object) -> float:
-    world = World(gravity=(0, -G), solver=solver, **settings)  # type: ignore[arg-type]
-    found = EXPERIMENTS[experiment].measures[measure].predicted(world, DT / steps)
-    assert found is not None
-    return found
+def test_measures_say_what_they_are_judged_against() -> None:
+    known = {effect.name for effect in EFFECTS}
+    for name, one in EXPERIMENTS.items():
+        assert one.name == name
+        assert set(one.needs) <= known
+        assert 0.0 < one.seconds <= 20.0
+        assert len({measure.what for measure in one.measures}) == len(one.measures) > 0
+        for measure in one.measures:
+            assert measure.name == f"{measure.what} [{measure.unit}]"
+            assert 0.0 < measure.scale < math.inf
+            assert measure.against
+            assert measure.scale == 1.0 or measure.unit != "relative"
+
+
+def test_a_name_is_given_once() -> None:
+    with pytest.raises(ValueError, match="'ballistic': must be an experiment's name that is not taken yet"):
+        experiment("ballistic", "", seconds=1.0, measures=Measure("", "", "", lambda history, dt: 0.0))
+
+
+def test_there_are_at_least_twenty_with_an_exact_answer() -> None:
+    assert len(EXACTLY) >= 25
 
 
 # --- an exact history has no error ------------------------------------------------------------------------------------
@@ -74,6 +117,16 @@ def test_period() -> None:
             x, v = y + h / 6.0 * (k1 + 2 * k2 + 2 * k3 + k4)
         history.append([x, v, 0.0])
     assert period_error(np.array(history), DT) < 1e-9
+    assert swing_energy_error(np.array(history), DT) < 1e-9
+
+
+def test_energy_of_a_swing() -> None:
+    # at rest where it was let go; half as high; at its lowest point, as fast as that makes it
+    speed = math.sqrt(2.0 * G * 2.0 * (1.0 - math.cos(AMPLITUDE)) / 4.03125)
+    exact = np.array([[AMPLITUDE, 0.0, 0.0], [0.0, speed, 0.0]])
+    assert swing_energy_error(exact, DT) < 1e-12
+    assert swing_energy_error(np.array([[0.0, 0.0, 0.0]]), DT) == pytest.approx(1.0)
+    assert swing_energy_error(exact * [1.0, 1.1, 1.0], DT) == pytest.approx(0.21)
 
 
 def test_period_of_what_does_not_swing_is_lost() -> None:
@@ -113,50 +166,310 @@ def test_impulses() -> None:
     assert impulse_error(exact, DT) < 1e-12
 
 
+@pytest.mark.parametrize("wrong", [0.0, 0.01])
+def test_spin(wrong: float) -> None:
+    t = np.arange(1, 241) * DT
+    turned = SPIN * t * (1.0 + wrong)
+    x = OFFSET + DRIFT[0] * t - OFFSET * np.cos(turned)
+    y = DRIFT[1] * t - OFFSET * np.sin(turned)
+    errors = spin_errors(np.column_stack([turned, x, y]), DT)
+    assert errors[-1, 0] == pytest.approx(wrong * SPIN * 4.0, abs=1e-9)
+    # the origin is off by the chord of the angle that is wrong
+    assert errors[:, 1].max() == pytest.approx(2 * OFFSET * math.sin(0.5 * wrong * SPIN * 4.0), abs=1e-9)
+
+
+def test_angular_momentum() -> None:
+    assert angular_momentum(np.array([[3.0, 0.0, 0.0, 2.0], [0.0, 3.0, -2.0, 5.0]])) == pytest.approx([6.0, 6.0])
+
+
+def test_spring() -> None:
+    t = np.arange(1, 256) * DT
+    exact = STRETCHED * np.column_stack([np.cos(OMEGA * t), -OMEGA * np.sin(OMEGA * t)])
+    assert spring_error(exact, DT) < 1e-12
+    assert spring_error(0.9 * exact, DT) == pytest.approx(0.1 * STRETCHED, rel=0.01)
+    assert spring_period_error(exact, DT) < 1e-6
+    assert spring_period_error(np.ones((50, 2)), DT) == math.inf
+
+
+def test_slopes() -> None:
+    t = np.arange(1, 121) * DT
+    exact = np.column_stack([0 * t, 0 * t, 0.5 * FALLS[2] * t**2, FALLS[1] * t])
+    assert slide_error(exact, DT) < 1e-12
+    assert acceleration_error(exact, DT) < 1e-12
+    assert slide_error(1.1 * exact, DT) == pytest.approx(0.2 * FALLS[2])
+    assert acceleration_error(1.1 * exact, DT) == pytest.approx(0.1 * FALLS[1])
+    assert FALLS[0] == 0.0 < FALLS[1] < FALLS[2]
+    assert FALLS[2] == pytest.approx(G * math.sin(ANGLES[2]) / 3.0)  # a third of the pull is left
+
+
+def test_wedge_and_block_keep_momentum_and_energy() -> None:
+    t = np.arange(1, 46) * DT
+    found = wedge_errors(np.zeros((45, 3)), DT)  # of what never moves: the ways themselves
+    away, sideways, down = found
+    assert 2.0 * away == pytest.approx(1.0 * sideways)  # m x = M X
+    lost = 1.0 * G * down
+    speeds = 2.0 * found / t[-1]
+    assert 0.5 * 2.0 * speeds[0] ** 2 + 0.5 * (speeds[1] ** 2 + speeds[2] ** 2) == pytest.approx(lost)
+    assert down == pytest.approx((away + sideways) * math.tan(math.radians(30.0)))  # it stays on the wedge
+
+
+@pytest.mark.parametrize("restitution", [0.0, 1.0])
+def test_collisions(restitution: float) -> None:
+    # by the centre of mass: it goes on, and what they do against it is turned round
+    together = (1.0 * SPEEDS[0] + 3.0 * SPEEDS[1]) / 4.0
+    after = [together - restitution * (speed - together) for speed in SPEEDS]
+    hit = GAPS / APPROACH
+    rows = []
+    for t in (0.5, 1.0):
+        places = [np.where(t < hit, s * t, s * hit + a * (t - hit)) for s, a in zip(SPEEDS, after, strict=True)]
+        speeds = [np.where(t < hit, s, a) for s, a in zip(SPEEDS, after, strict=True)]
+        x = np.column_stack([places[0] - DISC_RADII[0], places[1] + GAPS + DISC_RADII[1]])
+        rows.append(np.stack([x, np.column_stack(speeds)], axis=2).ravel())
+    exact = np.array(rows)
+    assert speeds_error(exact, 0.5, restitution) < 1e-12
+    assert places_error(exact, 0.5, restitution) < 1e-12
+    assert momentum_error(exact, 0.5) < 1e-12
+    exact[-1, 1] += 0.25  # the lighter of the first pair is too fast
+    assert speeds_error(exact, 0.5, restitution) == pytest.approx(0.25)
+    assert momentum_error(exact, 0.5) == pytest.approx(0.25)
+
+
+def test_shot_keeps_momentum_and_parts_with_half_of_its_speed() -> None:
+    disc, rod, spin = AFTER
+    inertia = 2.0 * (0.4**2 + 3.0**2) / 12.0
+    assert 1.0 * disc + 2.0 * rod == pytest.approx(5.0)
+    assert 2.0 * rod * 0.0 + inertia * spin - 1.0 * disc * 1.0 == pytest.approx(-5.0)  # about the rod's first place
+    assert rod - 1.0 * spin - disc == pytest.approx(0.5 * 5.0)  # of the point that was hit
+    assert np.abs(shot_errors(np.array([[*AFTER, *AFTER]]))).max() == 0.0
+
+
+def test_forces_are_compared_as_impulses() -> None:
+    exact = np.tile([125.0 * DT, 195.0 * DT], (120, 1))
+    for column, force in ((0, 125.0), (1, 195.0)):
+        measure = force_error(column, force)
+        assert measure.error(exact, DT) < 1e-12
+        assert measure.error(0.98 * exact, DT) == pytest.approx(0.02)
+    loads = np.array([3.0, 2.0, 1.0])
+    assert tension_error(loads).error(np.tile([3.0 * DT, 2.0 * DT, 1.1 * DT, 9.0], (60, 1)), DT) == pytest.approx(0.1)
+
+
+def test_a_beam_is_in_balance() -> None:
+    # each piece, of 2 m and 10 N: the moment at its left end carries that at its right end, the shear there, and itself
+    for k in range(3):
+        assert MOMENTS[k] == pytest.approx(MOMENTS[k + 1] + 2.0 * SHEARS[k + 1] + 1.0 * 10.0)
+        assert SHEARS[k] == pytest.approx(SHEARS[k + 1] + 10.0)
+    assert (MOMENTS[3], SHEARS[3]) == pytest.approx((10.0, 10.0))
+
+
 # --- the engine's are as predicted ------------------------------------------------------------------------------------
 
+ITERATED: dict[str, Any] = {"joint_solving": "iterated"}
+CLOSED_FORMS = [
+    ("ballistic", "height", {}),
+    ("damping", "speed", {}),
+    ("orbit", "radius", {}),
+    ("pendulum", "joint gap", {}),
+    ("spring", "place", {}),
+    ("spring", "period", {}),
+    ("sliding", "distance", {}),
+    ("conveyor", "distance", {}),
+    ("incline", "slide", {}),
+    ("wedge", "wedge", {}),
+    ("wedge", "block", {}),
+    ("stack", "sag", {}),
+    ("atwood", "distance", {}),
+    ("atwood", "stretch", {}),
+    ("hanging_chain", "stretch", {}),
+    ("hanging_chain", "stretch", ITERATED),
+    ("hanging_chain", "stretch", {"joint_solving": "direct"}),
+    ("cantilever", "sag", {}),
+    ("cantilever", "sag", ITERATED),
+]
+EXACT = [
+    (name, measure.what)
+    for name, one in EXACTLY.items()
+    for measure in one.measures
+    if predicted(name, measure.what) == 0.0
+]
 
-@pytest.mark.parametrize("settings", [{"substeps": 1}, {"substeps": 4}, {"substeps": 16}])
-@pytest.mark.parametrize(("experiment", "measure"), [("ballistic", 0), ("pendulum", 1), ("sliding", 0), ("stack", 1)])
-def test_soft_step_errs_as_predicted(experiment: str, measure: int, settings: dict) -> None:
-    error = error_of(experiment, measure, **settings)
-    assert error == pytest.approx(predicted(experiment, measure, **settings), rel=0.06)
+
+@pytest.mark.parametrize("substeps", [4, 8])
+@pytest.mark.parametrize(("name", "what", "settings"), CLOSED_FORMS)
+def test_soft_step_errs_as_predicted(name: str, what: str, settings: dict, substeps: int) -> None:
+    settings = {"substeps": substeps, **settings}
+    assert error_of(name, what, **settings) == pytest.approx(predicted(name, what, **settings), rel=0.06, abs=2e-5)
+
+
+@pytest.mark.parametrize(("name", "what"), EXACT)
+def test_where_no_error_is_made_only_rounding_is_left(name: str, what: str) -> None:
+    least = 1e-8 if name == "incline" else 1e-12  # how the box sank into the slope dies out
+    for substeps in (4, 16):
+        assert error_of(name, what, substeps=substeps) < least * scale_of(name, what)
+
+
+def test_much_is_exact() -> None:
+    assert {name for name, _ in EXACT} >= {"spinning", "orbit", "collision", "collision_inelastic", "off_centre"}
 
 
 @pytest.mark.parametrize("substeps", [8, 16])
-@pytest.mark.parametrize(("experiment", "measure"), [("pendulum", 1), ("stack", 1)])
-def test_fixed_stiffness_has_the_predicted_floor(experiment: str, measure: int, substeps: int) -> None:
-    settings = {"substeps": substeps, "stiffness": "fixed"}
-    error = error_of(experiment, measure, **settings)
-    assert error == pytest.approx(predicted(experiment, measure, **settings), rel=0.06)
-    assert error > 2 * predicted(experiment, measure, substeps=substeps)
+@pytest.mark.parametrize(("name", "what"), [("pendulum", "joint gap"), ("stack", "sag"), ("hanging_chain", "stretch")])
+def test_fixed_stiffness_has_the_predicted_floor(name: str, what: str, substeps: int) -> None:
+    settings = {"substeps": substeps, "stiffness": "fixed", **ITERATED}
+    error, following = error_of(name, what, **settings), predicted(name, what, substeps=substeps, **ITERATED)
+    assert error == pytest.approx(predicted(name, what, **settings), rel=0.06)
+    assert following is not None
+    assert error > 2 * following
+
+
+def test_energy_of_a_pendulum_wobbles_as_predicted() -> None:
+    assert error_of("pendulum", "energy", substeps=16) == pytest.approx(
+        predicted("pendulum", "energy", substeps=16), rel=0.03
+    )
+
+
+@pytest.mark.parametrize("solver", [name for name in SPRINGS if name in SOLVERS])
+def test_springs_swing_as_each_solver_has_them(solver: str) -> None:
+    for what in ("place", "period"):
+        expected = predicted("spring", what, solver, substeps=4)
+        assert error_of("spring", what, solver, substeps=4) == pytest.approx(expected, rel=1e-3)
+    assert predicted("spring", "place", "sequential_impulses") is None
 
 
 @pytest.mark.parametrize("steps", [1, 4])
-@pytest.mark.parametrize(("experiment", "measure"), [("ballistic", 0), ("sliding", 0), ("pendulum", 1)])
-def test_sequential_impulses_err_as_predicted(experiment: str, measure: int, steps: int) -> None:
-    error = error_of(experiment, measure, "sequential_impulses", steps)
-    assert error == pytest.approx(predicted(experiment, measure, "sequential_impulses", steps), rel=0.1)
+@pytest.mark.parametrize(
+    ("name", "what"), [("ballistic", "height"), ("sliding", "distance"), ("pendulum", "joint gap")]
+)
+def test_sequential_impulses_err_as_predicted(name: str, what: str, steps: int) -> None:
+    error = error_of(name, what, "sequential_impulses", steps)
+    assert error == pytest.approx(predicted(name, what, "sequential_impulses", steps), rel=0.1)
+
+
+@pytest.mark.parametrize(
+    ("name", "what"),
+    [("rolling", "distance"), ("slipping", "distance"), ("skid", "distance"), ("wedge", "block"), ("incline", "slide")],
+)
+def test_where_contacts_are_fresh_discs_roll_as_predicted(name: str, what: str) -> None:
+    error = error_of(name, what, "sequential_impulses", 4)
+    assert error == pytest.approx(predicted(name, what, "sequential_impulses", 4), rel=0.06)
+
+
+def test_nothing_is_said_of_what_turns_within_a_step() -> None:
+    assert predicted("rolling", "distance", substeps=4) is None
+    assert predicted("rolling", "distance", substeps=1) is not None
+    for name, what in (("stack", "sag"), ("pendulum", "joint gap")):
+        assert predicted(name, what, substeps=4) is not None
+
+
+# --- orders of convergence --------------------------------------------------------------------------------------------
+
+ORDERS = [
+    ("ballistic", "height", 1),
+    ("damping", "speed", 1),
+    ("orbit", "radius", 1),
+    ("pendulum", "joint gap", 2),
+    ("pendulum", "energy", 1),
+    ("spring", "period", 2),
+    ("sliding", "distance", 1),
+    ("conveyor", "distance", 1),
+    ("incline", "slide", 1),
+    ("incline", "creep", 2),
+    ("wedge", "wedge", 1),
+    ("wedge", "block", 1),
+    ("atwood", "distance", 1),
+    ("atwood", "stretch", 2),
+    ("stack", "sag", 2),
+    ("hanging_chain", "stretch", 2),
+    ("bridge", "shape", 2),
+    ("bridge", "tension", 2),
+    ("cantilever", "sag", 2),
+]
+
+
+@pytest.mark.parametrize(("name", "what", "order"), ORDERS)
+def test_error_falls_with_the_substeps_by_its_order(name: str, what: str, order: int) -> None:
+    coarse, fine = (error_of(name, what, substeps=substeps, **ITERATED) for substeps in (8, 16))
+    assert math.log2(coarse / fine) == pytest.approx(order, abs=0.15 * order)
+
+
+@pytest.mark.parametrize(
+    ("name", "what", "order"),
+    [
+        ("ballistic", "height", 1),
+        ("sliding", "distance", 1),
+        ("rolling", "distance", 1),
+        ("rolling", "spin", 2),
+        ("slipping", "spin", 2),
+        ("skid", "distance", 1),
+        ("pendulum", "joint gap", 2),
+        ("incline", "creep", 2),
+        ("lever", "stop force", 2),
+    ],
+)
+def test_error_of_sequential_impulses_falls_with_the_time_step(name: str, what: str, order: int) -> None:
+    coarse, fine = (error_of(name, what, "sequential_impulses", steps) for steps in (2, 4))
+    assert math.log2(coarse / fine) == pytest.approx(order, abs=0.15 * order)
 
 
 def test_more_substeps_make_the_period_right() -> None:
-    errors = [error_of("pendulum", 0, substeps=substeps) for substeps in (1, 4, 16)]
+    errors = [error_of("pendulum", "period", substeps=substeps) for substeps in (1, 4, 16)]
     assert errors[0] > 10 * errors[1] > 20 * errors[2]
     assert errors[2] < 1e-4
 
 
-def test_more_substeps_make_bounces_right() -> None:
-    errors = [error_of("bounce", 0, substeps=substeps) for substeps in (1, 4, 16)]
+@pytest.mark.parametrize("name", ["bounce", "bounce_elastic"])
+def test_more_substeps_make_bounces_right(name: str) -> None:
+    errors = [error_of(name, "apex", substeps=substeps) for substeps in (1, 4, 16)]
     assert errors[0] > 2 * errors[1] > 4 * errors[2]
 
 
-def test_contacts_of_a_stack_carry_the_weight_above() -> None:
-    assert error_of("stack", 0, substeps=16) < 1e-6
+def test_when_discs_meet_is_known_to_a_step_and_not_to_a_substep() -> None:
+    few, many = (error_of("collision", "place", substeps=substeps) for substeps in (4, 16))
+    assert few == pytest.approx(many, rel=0.02)
+    assert error_of("collision", "place", steps=4, substeps=4) < 0.2 * few
+
+
+@pytest.mark.parametrize(
+    ("name", "what", "most"),
+    [
+        ("stack", "impulse", 1e-6),
+        ("lever", "stop force", 1e-6),
+        ("lever", "pin force", 1e-6),
+        ("atwood", "tension", 1e-12),
+        ("hanging_chain", "tension", 1e-9),
+        ("cantilever", "moment", 1e-9),
+        ("cantilever", "force", 1e-9),
+    ],
+)
+def test_what_rests_is_carried(name: str, what: str, most: float) -> None:
+    assert error_of(name, what, substeps=16) < most
+
+
+def test_how_far_a_disc_turns_in_a_step_is_an_error_of_the_time_step() -> None:
+    # its contact is found once a step, and as deep as the step began only there: an error of (w dt)^2
+    by_steps = [error_of("skid", "speed", steps=steps, substeps=1, recycling=False) for steps in (1, 4, 16)]
+    assert by_steps[0] == pytest.approx(16 * by_steps[1], rel=0.05)
+    assert by_steps[1] == pytest.approx(16 * by_steps[2], rel=0.05)
+    by_substeps = [error_of("skid", "speed", substeps=substeps, recycling=False) for substeps in (8, 16)]
+    assert by_substeps[0] == pytest.approx(by_substeps[1], rel=0.05)
+
+
+def test_discs_end_up_rolling() -> None:
+    # what is left is how the disc turns over its contact within a step, which is found once
+    assert error_of("skid", "speed", substeps=4) < 2e-3
+    assert error_of("rolling", "spin", substeps=4) < 5e-3
+    assert error_of("skid", "speed", "sequential_impulses") < 1e-12
 
 
 @pytest.mark.parametrize("solver", SOLVERS)
-@pytest.mark.parametrize("name", EXPERIMENTS)
+@pytest.mark.parametrize("name", EXACTLY)
 def test_every_experiment_runs_with_every_solver_that_can(name: str, solver: str) -> None:
-    if not set(EXPERIMENTS[name].needs) & set(SOLVERS[solver].lacks):
-        for measure in range(len(EXPERIMENTS[name].measures)):
-            assert error_of(name, measure, solver) < 1.0
+    if able(EXPERIMENTS[name], solver):
+        try:
+            errors = errors_of(name, solver, 1, ())
+        except StepError as error:
+            assert solver == "direct"
+            assert "takes at most" in str(error)  # rows: what has many copies is too large
+            return
+        assert not any(math.isnan(error) for error in errors.values())
+        if solver == "soft_step":
+            assert all(errors[what] < 0.5 * scale_of(name, what) for what in errors)

@@ -200,3 +200,151 @@ def test_bridge_hangs_where_its_energy_is_least() -> None:
 @pytest.mark.parametrize(("hertz", "boxes"), [(30.0, 14.07), (60.0, 22.3), (120.0, 35.5), (240.0, 56.3)])
 def test_buckling_height_is_greenhills(hertz: float, boxes: float) -> None:
     assert ref.buckling_height(hertz) == pytest.approx(boxes, abs=0.06)
+
+
+# --- slopes, wedges, discs --------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("angle", [0.2, 0.6, 1.2])
+def test_block_and_wedge_move_as_newton_says(angle: float) -> None:
+    wedge, block = 2.0, 0.7
+    away, along = ref.wedge_accelerations(wedge, block, angle, G)
+    sideways, down = along * math.cos(angle) - away, along * math.sin(angle)
+    normal = block * (G - down) / math.cos(angle)  # from the block's vertical motion
+    assert block * sideways == pytest.approx(normal * math.sin(angle))
+    assert wedge * away == pytest.approx(normal * math.sin(angle))
+
+
+def test_a_wedge_that_is_far_heavier_stands() -> None:
+    away, along = ref.wedge_accelerations(1e9, 1.0, 0.5, G)
+    assert away == pytest.approx(0.0, abs=1e-6)
+    assert along == pytest.approx(G * math.sin(0.5))
+
+
+def test_rolling_and_slipping_meet_where_friction_is_just_enough() -> None:
+    friction, radius = 0.2, 0.5
+    angle = math.atan(3.0 * friction)
+    rolls = ref.rolling_acceleration(angle, G)
+    assert rolls == pytest.approx(ref.slope_acceleration(angle, friction, G))
+    assert rolls / radius == pytest.approx(ref.slip_spin(angle, friction, radius, G))
+
+
+def test_a_skidding_disc_keeps_its_angular_momentum_about_the_floor() -> None:
+    time, speed = ref.skid(6.0, 0.25, G)
+    radius, mass = 0.5, 2.0
+    inertia = 0.5 * mass * radius**2
+    assert mass * speed * radius + inertia * speed / radius == pytest.approx(mass * 6.0 * radius)
+    assert 6.0 - 0.25 * G * time == pytest.approx(speed)
+
+
+# --- springs, damping -------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("h", [1 / 60, 1 / 960])
+def test_soft_springs_swing_as_their_two_passes_make_them(h: float) -> None:
+    omega, x, v, found = 2.0 * math.pi, 0.5, 0.0, []
+    softer = 1.0 / (1.0 + (omega * h) ** 2)
+    for _ in range(round(2.0 / h)):
+        x += h * softer * (v - h * omega**2 * x)  # v' = v - h w^2 (x + h v')
+        v = softer * (v - h * omega**2 * x)  # v1 = v - h w^2 (x1 + h v1)
+        found.append(x)
+    t = h * np.arange(1, len(found) + 1)
+    assert ref.soft_oscillation(0.5, omega, h, t) == pytest.approx(np.array(found), abs=1e-10)
+    # as long a period as the zeros of the curve have, which is damped but else a cosine
+    signs = np.flatnonzero(np.diff(np.sign(found)))
+    assert len(signs) == 4
+    excess = ref.soft_period_excess(omega, h)
+    assert (t[signs[2]] - t[signs[0]]) == pytest.approx(1.0 + excess, abs=1.5 * h)
+    assert excess == pytest.approx(11.0 / 24.0 * (omega * h) ** 2, rel=0.01)
+
+
+@pytest.mark.parametrize("h", [1 / 60, 1 / 960])
+def test_implicit_springs_swing_as_implicit_euler_has_it(h: float) -> None:
+    omega, x, v, found = 2.0 * math.pi, 0.5, 0.0, []
+    for _ in range(round(2.0 / h)):
+        v = (v - h * omega**2 * x) / (1.0 + (omega * h) ** 2)
+        x += h * v
+        found.append(x)
+    t = h * np.arange(1, len(found) + 1)
+    assert ref.implicit_oscillation(0.5, omega, h, t) == pytest.approx(np.array(found), abs=1e-10)
+    assert ref.implicit_period_excess(omega, h) == pytest.approx((omega * h) ** 2 / 3.0, rel=0.01)
+
+
+@pytest.mark.parametrize("amplitude", [0.3, 2.0])
+def test_energy_of_a_swing_wobbles_by_what_is_said(amplitude: float) -> None:
+    inertia, mass, distance, h = 5.0, 1.3, 1.7, 1e-4
+    pull = mass * G * distance
+    x, v, worst = amplitude, 0.0, 0.0
+    for _ in range(30_000):
+        v -= h * pull * math.sin(x) / inertia
+        x += h * v
+        worst = max(worst, abs(0.5 * inertia * v * v - pull * (math.cos(x) - math.cos(amplitude))))
+    found = ref.swing_wobble(inertia, mass, distance, G, amplitude, h)
+    assert worst / (pull * (1.0 - math.cos(amplitude))) == pytest.approx(found, rel=1e-3)
+
+
+def test_damping_lags_by_what_is_said() -> None:
+    h, speed = 1 / 60, 6.0
+    for _ in range(120):
+        speed /= 1.0 + 0.7 * h
+    assert speed - ref.damped(6.0, 0.7, 2.0) == pytest.approx(ref.damping_excess(6.0, 0.7, h, 2.0), rel=1e-9)
+
+
+# --- impacts ----------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("restitution", [0.0, 0.5, 1.0])
+def test_collisions_keep_momentum_and_lose_the_energy_that_they_must(restitution: float) -> None:
+    after = ref.collision(1.0, 3.0, 4.0, -1.0, restitution)
+    assert 1.0 * after[0] + 3.0 * after[1] == pytest.approx(1.0)
+    assert after[1] - after[0] == pytest.approx(5.0 * restitution)
+    lost = 0.5 * (4.0**2 + 3.0) - 0.5 * (after[0] ** 2 + 3.0 * after[1] ** 2)
+    assert lost == pytest.approx(0.5 * 0.75 * (1.0 - restitution**2) * 5.0**2)
+
+
+def test_a_push_past_the_centre_meets_less_mass() -> None:
+    through = ref.off_centre_impulse(1.0, 2.0, 1.5, 0.0, 5.0, 0.5)
+    assert through == pytest.approx(1.5 * 5.0 / 1.5)
+    push = ref.off_centre_impulse(1.0, 2.0, 1.5, 0.8, 5.0, 0.5)
+    point = push / 2.0 + 0.8 * (0.8 * push / 1.5)  # of the rod, where it was hit
+    assert point - (5.0 - push) == pytest.approx(0.5 * 5.0)
+
+
+# --- what hangs -------------------------------------------------------------------------------------------------------
+
+
+def test_hanging_links_are_in_balance_one_by_one() -> None:
+    joints, pulls = ref.hanging_links(7, 1.2, 2.0, 6.0, G)
+    assert joints[0] == pytest.approx([0.0, 0.0])
+    assert joints[-1] == pytest.approx([6.0, 0.0], abs=1e-9)
+    assert np.hypot(*np.diff(joints, axis=0).T) == pytest.approx(np.full(7, 1.2))
+    for k in range(7):
+        before, after = -pulls[k], pulls[k + 1]
+        assert before + after + [0.0, -2.0 * G] == pytest.approx([0.0, 0.0], abs=1e-9)
+        half = 0.5 * (joints[k + 1] - joints[k])
+        turning = half[0] * (after[1] - before[1]) - half[1] * (after[0] - before[0])
+        assert turning == pytest.approx(0.0, abs=1e-9)
+
+
+def test_hanging_links_are_a_bridge_whose_joints_do_not_give_way() -> None:
+    joints, _ = ref.hanging_links(7, 1.2, 2.0, 6.0, G)
+    middle = 0.5 * (joints[3, 1] + joints[4, 1])
+    assert ref.hanging_bridge(7, 1.2, 2.0, 1e12, 6.0, G) == pytest.approx(-middle, rel=1e-9)
+
+
+@pytest.mark.parametrize("span", [0.0, 8.4, -1.0])
+def test_links_that_cannot_span_it_are_refused(span: float) -> None:
+    with pytest.raises(ValueError, match=r"span = .*: must be above 0 and below the chain's length, 8.4"):
+        ref.hanging_links(7, 1.2, 2.0, span, G)
+
+
+def test_loads_of_what_hangs_and_of_what_sticks_out() -> None:
+    assert ref.hanging_loads([1.0, 2.0, 4.0], G) == pytest.approx([70.0, 60.0, 40.0])
+    # of three pieces of 2 m and 10 N: 10 (1 + 3 + 5), 10 (1 + 3), 10
+    assert ref.cantilever_moments(3, 2.0, 1.0, G) == pytest.approx([90.0, 40.0, 10.0])
+
+
+def test_atwood_pulls_both_with_the_same_rope() -> None:
+    acceleration, tension = ref.atwood(3.0, 2.0, G)
+    assert 3.0 * G - tension == pytest.approx(3.0 * acceleration)
+    assert tension - 2.0 * G == pytest.approx(2.0 * acceleration)
