@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-import threading
+import subprocess
+import sys
 import time
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
@@ -102,6 +103,18 @@ def compile_all(say: Say, precisions: Iterable[str] = ("single",)) -> tuple[int,
     return len(names), time.perf_counter() - started
 
 
-def compile_rest(precision: str) -> None:
-    """Compiles in the background what a scene does not call for yet but a visitor may: nothing waits for it."""
-    threading.Thread(target=exercise, args=(precision,), name="compiling", daemon=True).start()
+@contextmanager
+def compiling_rest(precision: str) -> Iterator[None]:
+    """While this lasts, compiles in the background what a scene does not call for yet but a visitor may.
+
+    In another process, onto the disk: the scene does not stutter for it, and it can be ended in the middle of a kernel,
+    at which a thread would take this process down with it.
+    """
+    code = f"from sandbox.compiling import exercise; exercise({precision!r})"
+    nothing = subprocess.DEVNULL
+    process = subprocess.Popen([sys.executable, "-c", code], stdin=nothing, stdout=nothing, stderr=nothing)
+    try:
+        yield
+    finally:
+        process.kill()
+        process.wait()

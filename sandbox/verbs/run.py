@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from sandbox.compiling import compile_rest, rehearse
+from sandbox.compiling import compiling_rest, rehearse
 from sandbox.lab.ablation import measure
 from sandbox.lab.compile_costs import compile_costs
 from sandbox.recorder import RecordingStart
@@ -87,8 +87,8 @@ def run(options: argparse.Namespace) -> int:
         print(f"tumble is at {app.url}   (Ctrl-C ends it)", flush=True)
         if not options.no_open:
             webbrowser.open(app.url)
-        compile_rest(settings.get("precision", scene.defaults().precision))
-        stop.wait()
+        with compiling_rest(settings.get("precision", scene.defaults().precision)):
+            stop.wait()
         session.close()
         app.close()
     return 0
