@@ -16,6 +16,8 @@ from engine import StepError, validate
 from engine.threads import MOST as MOST_THREADS
 from sandbox.compiling import announced
 from sandbox.lab.bench import Plan, bench
+from sandbox.lab.bench_claims import as_text as claims_as_text
+from sandbox.lab.bench_claims import claims
 from sandbox.lab.bench_report import as_markdown, as_text
 from sandbox.lab.bench_result import BenchResult
 from sandbox.lab.bench_scenes import FEWEST_STEPS, FOLDER, MOST_STEPS, default_scenes, settling_time
@@ -53,6 +55,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--markdown", type=Path, metavar="FILE", help="write the tables into a page of the documents, where it asks"
     )
+    parser.add_argument(
+        "--claims", action="store_true", help="instead: what 10,000 boxes asleep cost, and chains solved at once"
+    )
     add_json(parser)
 
 
@@ -65,6 +70,11 @@ def seconds(text: str) -> float:
 
 
 def run(options: argparse.Namespace) -> int:
+    if options.claims:
+        with announced(say):
+            found = claims()
+        report(options, found, claims_as_text(found))
+        return 0
     scenes = [scene_named(name) for name in options.scene] or default_scenes(talk=options.box2d_lite is not None)
     _check_files(options)
     try:
