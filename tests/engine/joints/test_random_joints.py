@@ -140,7 +140,9 @@ def stored(world: World) -> float:
 
 
 def off_by(world: World) -> float:
-    """How far anchors that are held rigidly are from where they are to be [m]."""
+    """How far anchors that are held rigidly are from where they are to be [m]; of slides, that motors may drive out by
+    tens of metres, for each metre of their length.
+    """
     worst = 0.0
     for joint, record in zip(world.joints, world.joint_records(), strict=True):
         x, y = record["x2"] - record["x1"], record["y2"] - record["y1"]
@@ -148,7 +150,7 @@ def off_by(world: World) -> float:
             worst = max(worst, math.hypot(x, y))
         elif joint.kind in ("prismatic", "wheel"):
             axis = joint.axis
-            worst = max(worst, abs(axis.x * y - axis.y * x))
+            worst = max(worst, abs(axis.x * y - axis.y * x) / max(1.0, math.hypot(x, y)))
         elif joint.kind == "distance" and joint.hertz is None and joint.motor_speed is None:
             length = math.hypot(x, y)
             lower = joint.length if joint.lower is None and joint.upper is None else joint.lower or 0.0
