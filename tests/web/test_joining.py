@@ -155,6 +155,7 @@ def test_the_tool_can_be_put_away(page: tuple[FakeSession, RawClient], how: str)
     session, client = page
     button = client.control("Join")
     client.set("Join", True)
+    wait_until(lambda: labels_of(client, button) == ["Cancel"])  # before it is another: what is late is told once
     click(client, -2.0, 3.0)
     said(client, WHERE)
     if how == "Escape":
