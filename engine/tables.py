@@ -8,6 +8,7 @@ of these tables, so whatever a later step depends on must stand in one of them.
 from __future__ import annotations
 
 from functools import cache
+from typing import Any
 
 import numba
 import numpy as np
@@ -231,15 +232,19 @@ def joint_dtype(precision: str) -> np.dtype:
     real = REALS[precision]
     return np.dtype(
         [
-            ("serial", np.int64),  # number of creation among the joints; -1: no joint in this row
-            ("kind", np.int64),  # index into JOINT_KINDS
-            ("held", np.int64),  # index into HELD
             ("body1", np.int64),  # rows of the bodies
             ("body2", np.int64),
             ("anchor1_x", np.float64),  # anchor in the frame of body1 [m]
             ("anchor1_y", np.float64),
             ("anchor2_x", np.float64),  # anchor in the frame of body2 [m]
             ("anchor2_y", np.float64),
+            ("impulse_x", real),  # accumulated, on body2 [N s]; of a line: across it [N s]
+            ("impulse_y", real),  # of a line: turning [N m s]
+            ("given_x", real),  # what the last step gave body2, likewise
+            ("given_y", real),
+            ("serial", np.int64),  # number of creation among the joints; -1: no joint in this row
+            ("kind", np.int64),  # index into JOINT_KINDS
+            ("held", np.int64),  # index into HELD
             ("axis_x", np.float64),  # unit axis in the frame of body1, of those that slide
             ("axis_y", np.float64),
             ("reference_angle", np.float64),  # of body2 over body1, where the joint's own angle is 0 [rad]
@@ -260,10 +265,6 @@ def joint_dtype(precision: str) -> np.dtype:
             ("mass_yy", real),
             ("bias_x", real),  # and velocity that removes the separation [m/s]
             ("bias_y", real),
-            ("impulse_x", real),  # accumulated, on body2 [N s]; of a line: across it [N s]
-            ("impulse_y", real),  # of a line: turning [N m s]
-            ("given_x", real),  # what the last step gave body2, likewise
-            ("given_y", real),
         ]
     )
 
@@ -272,6 +273,11 @@ ALONG_NOTHING, ALONG_AXIS, ALONG_WAY = range(3)
 """What a joint's slide is along: there is none; its axis; the way from anchor to anchor."""
 
 NO_SPRING, SPRING, STIFF = range(3)
+
+
+def rounded_up(strength: Any) -> Any:
+    """The next power of two above the strength of a motor: what depends on it holds until it has changed that much."""
+    return np.ldexp(1.0, np.frexp(strength)[1])
 
 
 @cache

@@ -52,7 +52,7 @@ def may_collide(row1, row2, shapes, bodies, colliders, joined, category, mask, g
         if is_listed(joined, min(serial1, serial2), max(serial1, serial2)):
             return False
     if len(category) > 0:
-        return may_meet(row1, row2, category, mask, group)
+        return may_meet(category[row1], mask[row1], group[row1], category[row2], mask[row2], group[row2])
     return True
 
 

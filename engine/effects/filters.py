@@ -48,14 +48,14 @@ FILTERS = Effect(
 
 
 @kernel
-def may_meet(row1, row2, category, mask, group):
+def may_meet(category1, mask1, group1, category2, mask2, group2):
     """Whether two shapes do not pass through each other.
 
     Of one group: never if it is negative, always if positive. Otherwise each one's mask must hold the other's category.
     """
-    if group[row1] != 0 and group[row1] == group[row2]:
-        return group[row1] > 0
-    return (mask[row1] & category[row2]) != 0 and (mask[row2] & category[row1]) != 0
+    if group1 != 0 and group1 == group2:
+        return group1 > 0
+    return (mask1 & category2) != 0 and (mask2 & category1) != 0
 
 
 @kernel
@@ -65,7 +65,7 @@ def drop_filtered(pairs, count, category, mask, group):
     for index in range(count):
         row1 = pairs[index, 0]
         row2 = pairs[index, 1]
-        if may_meet(row1, row2, category, mask, group):
+        if may_meet(category[row1], mask[row1], group[row1], category[row2], mask[row2], group[row2]):
             pairs[kept, 0] = row1
             pairs[kept, 1] = row2
             kept += 1

@@ -9,7 +9,7 @@ import numpy as np
 from engine import validate
 from engine.joints.fields import FAR, Most, Number, acts, clear_idle
 from engine.solvers import SOLVERS
-from engine.tables import ALONG_WAY, HELD, JOINT_KINDS, NEVER, NO_SPRING, NOTHING, SPRING, STIFF
+from engine.tables import ALONG_WAY, HELD, JOINT_KINDS, NEVER, NO_SPRING, NOTHING, SPRING, STIFF, rounded_up
 from engine.trigonometry import cos_sin
 from engine.vec2 import Vec2, unrotate
 
@@ -122,12 +122,16 @@ class Joint:
 
 
 def structure(part: Any, table: str) -> tuple:
-    """What of a joint decides which rows it has, and which tables are there."""
+    """What of a joint decides which rows it has, which tables are there, and whether it is solved with others at once.
+
+    Of a motor's strength no more than its power of two: who sets it in each step pays for that in few of them.
+    """
     if table == "joints":
         names = ("break_force", "break_torque", "max_force", "bias_factor")
         rigid = part["hertz"] == 0.0 and part["softness"] == 0.0
         return (rigid, *(part[name] >= 0.0 for name in names))
-    return tuple(int(part[name]) for name in ("along", "spring", "motored", "limited"))
+    strength = float(rounded_up(part["max_motor"])) if part["motored"] else 0.0
+    return (strength, *(int(part[name]) for name in ("along", "spring", "motored", "limited")))
 
 
 def settle(part: Any, along: int) -> None:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from engine.colouring import Layout, colour_joints
+from engine.colouring import COLOURS, Layout, colour_joints
 from engine.tables import ALONG_NOTHING, HELD, JOINT_KINDS, POINT, STIFF
 
 if TYPE_CHECKING:
@@ -28,17 +28,10 @@ class JointLayout:
         self.layouts = {name: Layout() for name in ROWS}
         self.slots = {name: np.empty(0, np.int32) for name in ROWS}  # which joint is in which place of which block
         self.called_for: frozenset[str] = frozenset()  # kinds of rows that any joint has, or whose code is forced
+        self.firsts = np.zeros((len(ROWS), COLOURS + 2), np.int64)  # the first block of each colour, and the end
+        self.stages = 0  # of a pass: colours that have any block
+        self.soft = False  # whether a point gives way otherwise than most
         self.capped = False  # whether a point is held with a largest force
-
-    @property
-    def firsts(self) -> np.ndarray:
-        """(kinds of rows, COLOURS + 2) int64: the first block of each colour, of the overflow, and the end."""
-        return np.stack([layout.firsts for layout in self.layouts.values()])
-
-    @property
-    def stages(self) -> int:
-        """How many of a pass have any block."""
-        return int((np.diff(self.firsts, axis=1) > 0).sum())
 
     def blocks(self, name: str) -> int:
         return self.layouts[name].blocks
@@ -67,9 +60,14 @@ class JointLayout:
         for name, layout in self.layouts.items():
             layout.arrange(np.where(has[name], colours, -1).astype(np.int32), state.lanes, -1)
             self.slots[name] = rows[layout.slots].astype(np.int32)
+        self.firsts = np.stack([layout.firsts for layout in self.layouts.values()])
+        self.stages = int((np.diff(self.firsts, axis=1) > 0).sum())
         forced = state.forced & {*PARTS, *(f"{kind} joints" for kind in JOINT_KINDS)}
         self.called_for = frozenset(name for name in ROWS if has[name].any() or forced)
-        self.capped = bool((joints["max_force"][order] >= 0.0).any())
+        points = joints[order[has["points"]]]
+        own = (points["softness"] > 0.0) | (points["hertz"] > 0.0) | (points["bias_factor"] >= 0.0)
+        self.capped = bool((points["max_force"] >= 0.0).any())
+        self.soft = bool(own.any() or self.capped or forced)
 
 
 def leave_chains(has: dict[str, np.ndarray], chained: np.ndarray, turns: np.ndarray, slides: np.ndarray) -> None:

@@ -87,7 +87,7 @@ def write_program(program, bodies, dynamic, moving, contacts, joints, chains, bo
         for _ in range(step.iterations):
             n = add_pass(program, n, begin + BIASED_ROWS, joints, chains, begin + BIASED, contacts, threads)
         n = add_stage(program, n, begin + POSITIONS, begin, moving, threads)
-        n = add_all_rows(program, n, begin + REFRESH_ROWS, joints, chains, threads)
+        n = add_all_rows(program, n, begin + REFRESH_ROWS, joints[:POINTS], chains, threads)  # points turn in each pass
         for _ in range(step.iterations - 1):
             n = add_pass(program, n, begin + RELAX_ROWS, joints, chains, begin + RELAX, contacts, threads)
         n = add_pass(program, n, begin + RELAX_ROWS_LAST, joints, chains, begin + RELAX_LAST, contacts, threads)

@@ -73,6 +73,40 @@ def test_a_time_step_that_wavers_calls_for_no_new_plan() -> None:
         assert world._state.chains is plan
 
 
+def driven_bar(torque: float, **settings) -> World:
+    """A bar of 70 g, half a metre long, that a motor would turn, but that is hinged to the ground at both its ends."""
+    world = World(precision="double", gravity=(0, 0), sleeping=False, **settings)
+    ground = world.create_body(kind="static")
+    bar = world.create_body(Box(0.5, 0.05), position=(0.25, 0), mass=0.07)
+    world.create_joint_revolute(ground, bar, anchor=(0, 0), motor_speed=3.0, max_motor_torque=torque)
+    world.create_joint_revolute(ground, bar, anchor=(0.5, 0))
+    return world
+
+
+def test_motors_are_loads() -> None:
+    """5 N m over half a metre is 10 N at each end: visited one by one the hinges of so light a bar give way."""
+    world = driven_bar(5.0)
+    assert solved_at_once(world) == 2
+    run(world, 60)
+    assert stretch(world) < 1e-5
+    assert [joint.force.y for joint in world.joints] == pytest.approx([10.0, -10.0], rel=1e-3)
+    assert stretch(run(driven_bar(5.0, joint_solving="iterated"), 60)) > 1e-3
+
+
+def test_a_chain_follows_the_strength_of_its_motors() -> None:
+    world = driven_bar(0.01)
+    assert solved_at_once(world) == 0
+    for torque, expected in ((5.0, 2), (0.02, 0), (6.0, 2), (7.0, 2)):
+        plan = world._state.chains
+        world.joints[0].max_motor_torque = torque
+        again = World(precision="double")
+        again.restore(world.snapshot())
+        assert solved_at_once(world) == solved_at_once(again) == expected
+        run(world, 5), run(again, 5)
+        assert world.state_hash() == again.state_hash()
+    assert world._state.chains is plan, "a strength that hardly changes calls for no new plan"
+
+
 def test_what_is_whirled_without_gravity_holds() -> None:
     """v^2 / r takes the place of gravity: 15^2 / 23 m, with 1000 times a link's mass at the end."""
     world = chain(precision="double", gravity=(0, 0), sleeping=False)

@@ -1,9 +1,9 @@
 """Which islands of joints are solved at once: those that would give way if their joints were visited one by one.
 
 A joint that carries a load F gives way by F K / w^2, K being what an impulse of 1 changes of its rate and w = 2 pi f
-its frequency (docs/soft_step.md). The loads are those of gravity, or of 10 m/s^2 where there is less, as if the island
-hung in a line from what it is joined to: chains.py finds them from the system that would be solved. So a scene calls
-for it by what it is made of.
+its frequency (docs/soft_step.md). The loads are those of motors, and those of gravity, or of 10 m/s^2 where there is
+less, as if the island hung in a line from what it is joined to: see loads.py. So a scene calls for it by what it is
+made of.
 """
 
 from __future__ import annotations
@@ -83,10 +83,11 @@ class Island(NamedTuple):
     hangs: bool  # whether any is joined to what does not move
 
 
-def islands_of(state: State, rows: np.ndarray, worth: bool) -> list[Island]:
+def islands_of(state: State, rows: np.ndarray, driven: np.ndarray | None) -> list[Island]:
     """Islands of two joints or more, in the order of creation; nets, with many loops, are left out.
 
-    worth: those alone that are worth a look: what falls freely, and is short and of like masses, is not.
+    driven: what motors ask of each body (loads.py); then those alone that are worth a look: what falls freely, and is
+    short, of like masses and without motors, is not.
     """
     joints, motions = state.joints.tables["joints"], state.bodies.tables["motions"]
     moves = motions["inverse_mass"] > 0.0
@@ -102,12 +103,13 @@ def islands_of(state: State, rows: np.ndarray, worth: bool) -> list[Island]:
     loops = np.bincount(places, inner, len(names)) - np.bincount(islands, minlength=len(names)) + 1
     hangs = np.bincount(places, ~inner, len(names)) > 0
     wanted = (counts > 1) & (loops <= counts // FILLING + FILLING)
-    if worth:
+    if driven is not None:
         mass = state.bodies.tables["bodies"]["mass"][bodies]
         least, most = np.full(len(names), np.inf), np.zeros(len(names))
         np.minimum.at(least, islands, mass)
         np.maximum.at(most, islands, mass)
-        wanted &= hangs | (counts >= LONG) | (most >= HEAVY * least)
+        asked = np.bincount(islands, driven[bodies], len(names)) > 0.0
+        wanted &= hangs | asked | (counts >= LONG) | (most >= HEAVY * least)
     by_island, by_body = np.argsort(places, kind="stable"), np.argsort(islands, kind="stable")
     ends, body_ends = np.cumsum(counts), np.cumsum(np.bincount(islands, minlength=len(names)))
     found = [

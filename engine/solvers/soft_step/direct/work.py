@@ -11,11 +11,12 @@ from engine.solvers.soft_step.direct import rows as rigid
 from engine.solvers.soft_step.direct import system
 from engine.solvers.soft_step.schedule import (
     BIASED_ROWS,
+    FORGET_ROWS,
     PREPARE_ROWS,
     REFRESH_ROWS,
-    RELAX_ROWS,
     RELAX_ROWS_LAST,
     STORE_ROWS,
+    WARM_ROWS,
 )  # fmt: skip
 
 STIFFNESS = 8.0 * math.pi
@@ -55,7 +56,11 @@ def solve_islands(
             assemble(island, couplings, columns, updates, rows, jacobians, diagonals, blocks, factors)
         elif verb == STORE_ROWS:
             rigid.store(begin, end, rows, given, accumulated, joints, turns, slides, step)
-        elif verb in (BIASED_ROWS, RELAX_ROWS, RELAX_ROWS_LAST):
+        elif verb == FORGET_ROWS:
+            clear(begin, end, accumulated)
+        else:
+            if verb == WARM_ROWS:
+                clear(begin, end, accumulated)
             rate = 0.0
             if verb == BIASED_ROWS:
                 rate = CORRECTION * np.float64(step.inverse_h) if step.position_correction != 0 else 0.0
@@ -63,13 +68,11 @@ def solve_islands(
             system.write_wanted(begin, end, rows, errors, jacobians, movers, rate, wanted)
             system.substitute(begin, end, columns, places, diagonals, factors, wanted)
             system.give(begin, end, rows, jacobians, wanted, accumulated, given, kept, movers)
-        else:
-            clear(begin, end, accumulated)
 
 
 @kernel
 def clear(first, last, values):
-    """Nothing yet: exact impulses need no start."""
+    """Nothing yet."""
     for k in range(first, last):
         for i in range(rigid.ROWS):
             values[k, i] = 0.0

@@ -5,7 +5,7 @@ from __future__ import annotations
 from engine.jit import kernel
 from engine.lanes import const
 from engine.solvers.soft_step.joints import along as directions
-from engine.solvers.soft_step.joints import free
+from engine.solvers.soft_step.joints import free, point_softness
 from engine.solvers.soft_step.joints import line as lines
 from engine.solvers.soft_step.joints import point as points
 from engine.solvers.soft_step.joints import slide as slidings
@@ -21,7 +21,7 @@ from engine.solvers.soft_step.schedule import (
     WARM_ROWS,
 )  # fmt: skip
 
-# Tables of springs, motors, limits and caps are None where no joint calls for them.
+# Tables of springs, motors, limits, softness and caps are None where no joint calls for them.
 
 
 @kernel
@@ -101,19 +101,19 @@ def line(verb, first, last, slots, rows, joints, bodies, motions, moved, step):
 
 
 @kernel
-def point(verb, first, last, slots, rows, caps, joints, bodies, motions, moved, step):
+def point(verb, first, last, slots, rows, softs, caps, joints, bodies, motions, moved, step):
     """Rows that hold two points together."""
     if verb == PREPARE_ROWS:
         points.prepare(first, last, slots, joints, bodies, motions, rows, step)
+        if softs is not None:
+            point_softness.prepare(first, last, slots, joints, softs, step)
         if caps is not None:
-            points.prepare_caps(first, last, slots, joints, caps, step)
-    elif verb == REFRESH_ROWS:
-        points.refresh(first, last, rows, moved)
+            point_softness.prepare_caps(first, last, slots, joints, caps, step)
     elif verb == WARM_ROWS:
-        points.warm_start(first, last, rows, moved)
+        points.warm_start(first, last, rows, softs, moved)
     elif verb == FORGET_ROWS:
         points.forget(first, last, rows)
     elif verb == STORE_ROWS:
         points.store_impulses(first, last, slots, rows, joints, step)
     elif solves(verb):
-        points.solve(first, last, rows, caps, moved, verb == BIASED_ROWS, kept_of(verb, step))
+        points.solve(first, last, rows, softs, caps, moved, verb == BIASED_ROWS, kept_of(verb, step), step)
