@@ -31,7 +31,6 @@ class JointLayout:
         self.firsts = np.zeros((len(ROWS), COLOURS + 2), np.int64)  # the first block of each colour, and the end
         self.stages = 0  # of a pass: colours that have any block
         self.soft = False  # whether a point gives way otherwise than most
-        self.capped = False  # whether a point is held with a largest force
 
     def blocks(self, name: str) -> int:
         return self.layouts[name].blocks
@@ -66,8 +65,7 @@ class JointLayout:
         self.called_for = frozenset(name for name in ROWS if has[name].any() or forced)
         points = joints[order[has["points"]]]
         own = (points["softness"] > 0.0) | (points["hertz"] > 0.0) | (points["bias_factor"] >= 0.0)
-        self.capped = bool((points["max_force"] >= 0.0).any())
-        self.soft = bool(own.any() or self.capped or forced)
+        self.soft = bool(own.any() or (points["max_force"] >= 0.0).any() or forced)
 
 
 def leave_chains(has: dict[str, np.ndarray], chained: np.ndarray, turns: np.ndarray, slides: np.ndarray) -> None:

@@ -23,7 +23,7 @@ from engine.solvers.soft_step.direct.chains import find_chains
 from engine.solvers.soft_step.joints.free import limit_dtype, motor_dtype, spring_dtype
 from engine.solvers.soft_step.joints.line import line_dtype
 from engine.solvers.soft_step.joints.point import point_dtype
-from engine.solvers.soft_step.joints.point_softness import cap_dtype, soft_dtype
+from engine.solvers.soft_step.joints.point_softness import soft_dtype
 from engine.solvers.soft_step.joints.slide import slide_dtype
 from engine.solvers.soft_step.joints.turn import turn_dtype
 from engine.solvers.soft_step.schedule import most_stages, write_program
@@ -122,7 +122,7 @@ def joint_arguments(state: State) -> tuple:
     """The tables of joints that a pass takes: None where none calls for them."""
     layout, slots, p = state.joint_layout, state.joint_layout.slots, state.precision
     if state.active_joints is None:
-        return (None,) * (3 + 5 + 5 + 2 + 4 + 1)
+        return (None,) * (3 + 5 + 5 + 2 + 3 + 1)
 
     def rows_of(name: str, dtype: np.dtype) -> Any:
         return rows(state, f"joints, {name}", dtype, layout.blocks(name)) if name in layout.called_for else None
@@ -136,13 +136,12 @@ def joint_arguments(state: State) -> tuple:
         )
 
     softs = rows(state, "softs", soft_dtype(p), layout.blocks("points")) if layout.soft else None
-    caps = rows(state, "caps", cap_dtype(p), layout.blocks("points")) if layout.capped else None
     return (
         state.active_joints, state.joints.tables["turns"], state.joints.tables["slides"],
         slots["turns"], rows_of("turns", turn_dtype(p)), *free_of("turns"),
         slots["slides"], rows_of("slides", slide_dtype(p)), *free_of("slides"),
         slots["lines"], rows_of("lines", line_dtype(p)),
-        slots["points"], rows_of("points", point_dtype(p)), softs, caps,
+        slots["points"], rows_of("points", point_dtype(p)), softs,
         state.chains.tables() if state.chains else None,
     )  # fmt: skip
 

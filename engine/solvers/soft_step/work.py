@@ -40,7 +40,7 @@ def do_part(
     kind, first, last, bodies, motions, moved, order, dynamic, moving, drives, arbiters, touching, shapes, slots, rows,
     frictions, belts, rollings, bounces, tangent_speed, rolling_resistance, restitutions, rule, joint_table, turns,
     slides, turn_slots, turn_rows, turn_springs, turn_motors, turn_limits, slide_slots, slide_rows, slide_springs,
-    slide_motors, slide_limits, line_slots, line_rows, point_slots, point_rows, softs, caps, chains, gravity, scales,
+    slide_motors, slide_limits, line_slots, line_rows, point_slots, point_rows, softs, chains, gravity, scales,
     linear, angular, steps,
 ):  # fmt: skip
     """One part of one stage: blocks from `first` to before `last`. Tables are None where nothing calls for them."""
@@ -98,7 +98,7 @@ def do_part(
         if point_rows is not None:
             if rows == POINTS:
                 joints.point(
-                    verb, first, last, point_slots, point_rows, softs, caps, joint_table, bodies, motions, moved, step
+                    verb, first, last, point_slots, point_rows, softs, joint_table, bodies, motions, moved, step
                 )  # fmt: skip
         if chains is not None:
             if rows == CHAINS:

@@ -106,6 +106,30 @@ def write_geometry(row, k, r1, r2, way, axis, angle, length, errors, jacobians):
 
 
 @kernel
+def carry(first, last, rows, accumulated, joints, turns, slides, step):
+    """The impulses to begin with, those of the step before: the other way round of `store`."""
+    for k in range(first, last):
+        row = rows[k]
+        joint, turn, slide = joints[row.joint], turns[row.joint], slides[row.joint]
+        for i in range(ROWS):
+            accumulated[k, i] = 0.0
+        count = 0
+        if row.held == POINT:
+            accumulated[k, 0], accumulated[k, 1] = joint.impulse_x * step.carried, joint.impulse_y * step.carried
+            count = 2
+        elif row.held >= LINE:
+            accumulated[k, 0] = joint.impulse_x * step.carried
+            count = 1
+        if row.rod != 0:
+            accumulated[k, count] = slide.spring_impulse * step.carried
+            count += 1
+        if row.held == LINE:
+            accumulated[k, count] = joint.impulse_y * step.carried
+        elif row.turn != 0:
+            accumulated[k, count] = turn.spring_impulse * step.carried
+
+
+@kernel
 def store(first, last, rows, given, accumulated, joints, turns, slides, step):
     """Keeps what was given, where the kind of joint has it: accumulated in the last substep, and in all."""
     for k in range(first, last):

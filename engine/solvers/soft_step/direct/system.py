@@ -149,6 +149,20 @@ def write_wanted(first, last, rows, errors, jacobians, movers, rate, wanted):
 
 
 @kernel
+def yield_to(first, last, rows, jacobians, accumulated, give, wanted):
+    """What is wanted less what the rows give way under what they bear already, each by a part of its own diagonal.
+
+    So the impulses come to the same in all, whatever part of them a substep began with.
+    """
+    for k in range(first, last):
+        row = rows[k]
+        mass = row.inverse_mass1 + row.inverse_mass2
+        for i in range(ROWS):
+            diagonal = product(jacobians, k, i, i, mass, row.inverse_inertia1, row.inverse_inertia2)
+            wanted[k, i] -= give * diagonal * accumulated[k, i]
+
+
+@kernel
 def substitute(first, last, below, places, diagonals, factors, wanted):
     """Solves L D L^T P = wanted in place."""
     for c in range(first, last):
@@ -174,22 +188,29 @@ def substitute(first, last, below, places, diagonals, factors, wanted):
 
 
 @kernel
-def give(first, last, rows, jacobians, wanted, accumulated, given, kept, movers):
-    """Gives the bodies the impulses that were found."""
+def push(first, last, rows, jacobians, impulses, movers):
+    """Gives the bodies impulses, three a joint."""
     for k in range(first, last):
         row = rows[k]
         a, b = load(movers, row.body1), load(movers, row.body2)
         x = y = turn1 = turn2 = 0.0
         for i in range(ROWS):
-            p = wanted[k, i]
-            accumulated[k, i] += p
-            given[k, i] += kept * accumulated[k, i]
+            p = impulses[k, i]
             x += p * jacobians[k, i, LX]
             y += p * jacobians[k, i, LY]
             turn1 += p * jacobians[k, i, ARM1]
             turn2 += p * jacobians[k, i, ARM2]
-        push = Vec2(const(x, a.w), const(y, a.w))
+        along = Vec2(const(x, a.w), const(y, a.w))
         w1 = a.w - row.inverse_inertia1 * const(turn1, a.w)
         w2 = b.w + row.inverse_inertia2 * const(turn2, a.w)
-        store(movers, row.body1, a.v - push * row.inverse_mass1, w1, a.turned)
-        store(movers, row.body2, b.v + push * row.inverse_mass2, w2, b.turned)
+        store(movers, row.body1, a.v - along * row.inverse_mass1, w1, a.turned)
+        store(movers, row.body2, b.v + along * row.inverse_mass2, w2, b.turned)
+
+
+@kernel
+def add_up(first, last, impulses, accumulated, given, kept):
+    """Adds them to those of the substep, and these, where kept is 1, to those of the step."""
+    for k in range(first, last):
+        for i in range(ROWS):
+            accumulated[k, i] += impulses[k, i]
+            given[k, i] += kept * accumulated[k, i]

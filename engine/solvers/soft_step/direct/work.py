@@ -50,6 +50,7 @@ def solve_islands(
                 begin, end, order, joints, turns, slides, bodies, motions, rows, errors, jacobians
             )  # fmt: skip
             clear(begin, end, given)
+            rigid.carry(begin, end, rows, accumulated, joints, turns, slides, step)
             assemble(island, couplings, columns, updates, rows, jacobians, diagonals, blocks, factors)
         elif verb == REFRESH_ROWS:
             rigid.refresh(begin, end, slides, rows, movers, errors, jacobians)
@@ -58,16 +59,19 @@ def solve_islands(
             rigid.store(begin, end, rows, given, accumulated, joints, turns, slides, step)
         elif verb == FORGET_ROWS:
             clear(begin, end, accumulated)
+        elif verb == WARM_ROWS:
+            system.push(begin, end, rows, jacobians, accumulated, movers)
         else:
-            if verb == WARM_ROWS:
-                clear(begin, end, accumulated)
             rate = 0.0
             if verb == BIASED_ROWS:
                 rate = CORRECTION * np.float64(step.inverse_h) if step.position_correction != 0 else 0.0
             kept = 1.0 if verb == RELAX_ROWS_LAST else 0.0
             system.write_wanted(begin, end, rows, errors, jacobians, movers, rate, wanted)
+            if verb == BIASED_ROWS:
+                system.yield_to(begin, end, rows, jacobians, accumulated, GIVE, wanted)
             system.substitute(begin, end, columns, places, diagonals, factors, wanted)
-            system.give(begin, end, rows, jacobians, wanted, accumulated, given, kept, movers)
+            system.push(begin, end, rows, jacobians, wanted, movers)
+            system.add_up(begin, end, wanted, accumulated, given, kept)
 
 
 @kernel

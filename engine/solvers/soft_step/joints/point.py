@@ -151,8 +151,8 @@ def held_to(total, most):
 
 
 @kernel
-def solve(first, last, rows, softs, caps, movers, biased, kept, step):
-    """One pass over the rows: with bias, or taking the push back. caps: None where nothing is held to a largest force.
+def solve(first, last, rows, softs, movers, biased, kept, step):
+    """One pass over the rows: with bias, or taking the push back.
 
     kept: 1 in the last pass of a substep, whose impulses are what the substep gave; 0 in others.
     """
@@ -164,8 +164,8 @@ def solve(first, last, rows, softs, caps, movers, biased, kept, step):
         before = Vec2(row.impulse_x, row.impulse_y)
         speed = (b.v + spin(b.w, r2)) - (a.v + spin(a.w, r1))
         impulse = change(softs, k, mass_of(row, softs, k, r1, r2), speed, now.way, before, biased, step)
-        if caps is not None:
-            impulse = held_to(before + impulse, at(caps, k).most) - before
+        if softs is not None:
+            impulse = held_to(before + impulse, at(softs, k).most) - before
         row.impulse_x += impulse.x
         row.impulse_y += impulse.y
         row.given_x += kept * row.impulse_x

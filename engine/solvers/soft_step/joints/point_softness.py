@@ -31,24 +31,9 @@ def soft_dtype(precision: str) -> np.dtype:
         "give",  # softness in a substep [1/kg]
         "bias_rate", "mass_scale", "impulse_scale",  # see softness.py
         "stays",  # 1: so when the push is taken back, too, for a spring is a force and no error; else 0
+        "most",  # the largest impulse in a substep [N s]
     )  # fmt: skip
     return np.dtype([(name, REALS[precision]) for name in names])
-
-
-@cache
-def cap_dtype(precision: str) -> np.dtype:
-    """The largest impulse that a point gives in a substep [N s]."""
-    return np.dtype([("most", REALS[precision])])
-
-
-@kernel
-def prepare_caps(first, last, slots, joints, caps, step):
-    """Writes how much each may give."""
-    for k in range(first, last):
-        joint = at(joints, numbers_at(slots, caps, k))
-        none = const(np.inf, joint.softness)
-        most = const(joint.max_force, none) * step.h
-        at(caps, k).most = select(joint.max_force >= const(0.0, joint.max_force), most, none)
 
 
 @kernel
@@ -86,3 +71,4 @@ def soften(joint, row, step):
     row.impulse_scale = select(tuned, soft.impulse_scale, scale)
     capped = joint.max_force >= const(0.0, joint.max_force)  # else what it gives is taken back, and it creeps there
     row.stays = select(springy | tuned | capped, one, zero)
+    row.most = select(capped, const(joint.max_force, zero) * step.h, const(np.inf, zero))

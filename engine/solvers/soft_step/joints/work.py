@@ -21,7 +21,7 @@ from engine.solvers.soft_step.schedule import (
     WARM_ROWS,
 )  # fmt: skip
 
-# Tables of springs, motors, limits, softness and caps are None where no joint calls for them.
+# Tables of springs, motors, limits and softness are None where no joint calls for them.
 
 
 @kernel
@@ -101,14 +101,12 @@ def line(verb, first, last, slots, rows, joints, bodies, motions, moved, step):
 
 
 @kernel
-def point(verb, first, last, slots, rows, softs, caps, joints, bodies, motions, moved, step):
+def point(verb, first, last, slots, rows, softs, joints, bodies, motions, moved, step):
     """Rows that hold two points together."""
     if verb == PREPARE_ROWS:
         points.prepare(first, last, slots, joints, bodies, motions, rows, step)
         if softs is not None:
             point_softness.prepare(first, last, slots, joints, softs, step)
-        if caps is not None:
-            point_softness.prepare_caps(first, last, slots, joints, caps, step)
     elif verb == WARM_ROWS:
         points.warm_start(first, last, rows, softs, moved)
     elif verb == FORGET_ROWS:
@@ -116,4 +114,4 @@ def point(verb, first, last, slots, rows, softs, caps, joints, bodies, motions, 
     elif verb == STORE_ROWS:
         points.store_impulses(first, last, slots, rows, joints, step)
     elif solves(verb):
-        points.solve(first, last, rows, softs, caps, moved, verb == BIASED_ROWS, kept_of(verb, step), step)
+        points.solve(first, last, rows, softs, moved, verb == BIASED_ROWS, kept_of(verb, step), step)
