@@ -34,11 +34,17 @@ def moves(motion):
 
 
 @kernel
-def stir(motions, one, other, driven):
-    """Two bodies touch or are joined: neither is still if that drives it, or if the other goes its way."""
-    if driven or moves(motions[one]) or moves(motions[other]):
-        motions[one].still = 0
-        motions[other].still = 0
+def stir(motions, one, other):
+    """Two bodies touch or are joined: neither is still if the other goes its way."""
+    if moves(motions[one]) or moves(motions[other]):
+        rouse(motions, one, other)
+
+
+@kernel
+def rouse(motions, one, other):
+    """Neither has been still so far."""
+    motions[one].still = 0
+    motions[other].still = 0
 
 
 @kernel
@@ -47,10 +53,11 @@ def stir_driven(indices, arbiters, belts, pairs, motions):
     for k in range(len(indices)):
         arbiter = arbiters[indices[k]]
         if arbiter.count > 0:
-            driven = belts[arbiter.shape1] != 0 or belts[arbiter.shape2] != 0
-            stir(motions, arbiter.body1, arbiter.body2, driven)
+            stir(motions, arbiter.body1, arbiter.body2)
+            if belts[arbiter.shape1] != 0 or belts[arbiter.shape2] != 0:
+                rouse(motions, arbiter.body1, arbiter.body2)
     for k in range(len(pairs)):
-        stir(motions, pairs[k, 0], pairs[k, 1], False)
+        stir(motions, pairs[k, 0], pairs[k, 1])
 
 
 @kernel

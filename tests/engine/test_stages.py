@@ -93,6 +93,6 @@ def test_a_spin_too_fast_is_named(solver: str) -> None:
     world = World(gravity=(0, 0), precision="double", solver=solver)
     body = world.create_body(Box(1, 1), mass=1e-3)
     body.torque = 1e308
-    with pytest.raises(StepError, match=r"angular velocity (inf|nan)"):
+    with pytest.raises(StepError, match=rf"angular velocity {'nan' if solver == 'avbd' else 'inf'}"):
         world.step(DT)
     assert not math.isfinite(body.angular_velocity)

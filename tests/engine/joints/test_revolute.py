@@ -260,8 +260,9 @@ def test_default_bias_factor_is_the_solvers_own() -> None:
 @either
 @pytest.mark.parametrize("precision", PRECISIONS)
 def test_collide_connected(precision: str, solver: str) -> None:
+    gently = solver in ("soft_step", "sequential_impulses")  # others may part two within the step
     for collide in (True, False):
-        world = World(gravity=(0, 0), precision=precision, solver=solver, position_correction=False)
+        world = World(gravity=(0, 0), precision=precision, solver=solver, position_correction=gently)
         a = world.create_body(Box(1, 1))
         other = world.create_body(Box(1, 1), position=(0.2, 0.1))
         b = world.create_body(Box(1, 1), position=(0.5, 0.5))

@@ -147,7 +147,7 @@ def test_compiling_is_timed_from_nothing() -> None:
     costs = compile_costs(world.snapshot())
     assert set(costs) == {effect.name for effect in EFFECTS}
     assert all(seconds >= 0.0 for seconds in costs.values())
-    for name in ("drag", "buoyancy", "magnets", "explosions", "revolute joints", "filters"):
+    for name in ("drag", "buoyancy", "magnets", "explosions", "friction", "revolute joints", "filters"):
         assert costs[name] > 0.02, f"{name} has kernels of its own"
     assert costs["buoyancy"] > costs["drag"], "ten kernels against one"
     assert costs["gravity"] < 0.5 * costs["buoyancy"], "only an argument of a kernel that is there anyway"

@@ -165,7 +165,9 @@ def solve(first, last, rows, softs, movers, biased, kept, step):
         speed = (b.v + spin(b.w, r2)) - (a.v + spin(a.w, r1))
         impulse = change(softs, k, mass_of(row, softs, k, r1, r2), speed, now.way, before, biased, step)
         if softs is not None:
-            impulse = held_to(before + impulse, at(softs, k).most) - before
+            most = at(softs, k).most
+            held = held_to(before + impulse, most) - before
+            impulse = choose(most < const(np.inf, most), held, impulse)
         row.impulse_x += impulse.x
         row.impulse_y += impulse.y
         row.given_x += kept * row.impulse_x
