@@ -5,7 +5,7 @@ from engine.broad_phase import BROAD_PHASES
 from engine.diagnostics import Diagnostics
 from engine.effects import EFFECTS, EffectStatus
 from engine.effects.fluid import Fluid
-from engine.errors import StepError
+from engine.errors import StepError, TooLarge
 from engine.events import BODY_EVENT, BROKEN_EVENT, HIT_EVENT, MOVED_EVENT, TOUCH_EVENT, Events
 from engine.joints import (
     DistanceJoint,
@@ -70,6 +70,7 @@ __all__ = [
     "ShapeHandle",
     "Snapshot",
     "StepError",
+    "TooLarge",
     "Vec2",
     "WeldJoint",
     "WheelJoint",

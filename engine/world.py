@@ -56,7 +56,8 @@ class World(Watched, Joining):
         """Moves the world on by dt [s]: find contacts, apply forces, solve constraints, update positions.
 
         dt = 0 changes nothing. ValueError if dt is negative or not finite; StepError, naming body and stage, if the
-        state stops being finite: the world is then not usable, restore a snapshot.
+        state stops being finite: the world is then not usable, restore a snapshot. TooLarge, which is a StepError too,
+        if the solver cannot take so much: no body has moved.
         """
         dt = self._checked(dt)
         if dt > 0.0:

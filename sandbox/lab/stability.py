@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from engine import SOLVERS, StepError
+from engine import SOLVERS, StepError, TooLarge
 from engine.compilation import timed_compilation
 from sandbox.lab.hard_cases import CASES, Case, NotApplicable
 from sandbox.lab.hard_cases.case import is_finite
@@ -17,7 +17,6 @@ from sandbox.lab.stability_stage import OurStage, PeerStage, open_stage
 from sandbox.scenes.criterion import Criterion, Reading
 
 LONGEST = 30.0  # CPU time that a run may take [s]: what takes longer is not applicable
-TOO_LARGE = "takes at most"  # in what a solver for small scenes says of others
 
 
 class OutOfTime(Exception):
@@ -122,12 +121,10 @@ def advance(stage: OurStage | PeerStage, dt: float, parts: int) -> bool:
     try:
         for _ in range(parts):
             stage.step(dt / parts)
-    except StepError as reason:
-        if TOO_LARGE in str(reason):
-            raise NotApplicable(str(reason)) from None
-        return False
-    except ValueError as reason:
+    except (ValueError, TooLarge) as reason:
         raise NotApplicable(str(reason)) from None
+    except StepError:
+        return False
     return is_finite(stage.world)
 
 

@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from engine.errors import StepError
+from engine.errors import TooLarge
 from engine.jit import kernel
 from engine.solvers import joint_rows
 from engine.solvers import sequential_impulses as talk
@@ -193,10 +193,10 @@ def size_of(state: State) -> int:
 
 
 def apply_forces(state: State, settings: Settings) -> int:
-    """Stage 2 of the talk. StepError if the scene is too large."""
+    """Stage 2 of the talk. TooLarge if the scene is."""
     size = size_of(state)
     if size > MOST_ROWS:
-        raise StepError(
+        raise TooLarge(
             f"step {state.step_count + 1}, stage 'apply forces': the solver 'direct' takes at most {MOST_ROWS} rows, "
             f"two for each contact point and up to ten for a joint, and there are {size}: take another solver"
         )

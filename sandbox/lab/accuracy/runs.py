@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from engine import SOLVERS, Snapshot, StepError, World
+from engine import SOLVERS, Snapshot, StepError, TooLarge, World
 from sandbox.lab.accuracy.rows import Row
 from sandbox.lab.accuracy.series import Point, matters
 from sandbox.lab.experiments import Experiment, Watch
@@ -79,10 +79,10 @@ def follow(run: Begun, until: float = math.inf) -> Watched:
             raise TooSlow
         try:
             world.step(dt)
+        except (ValueError, TooLarge) as error:
+            raise NotApplicable(str(error)) from None
         except StepError:
             break
-        except ValueError as error:
-            raise NotApplicable(str(error)) from None
         history.append(run.observe(world))
         constraints += len(world.contact_records()) + world.joint_count
     return Watched(np.array(history), constraints * passes(world))

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from engine import Box, Circle, StepError, World
+from engine import Box, Circle, TooLarge, World
 from engine.solvers.direct import MOST_ROWS, pivoting
 from tests.engine.worlds import DT, floor, run
 
@@ -237,7 +237,7 @@ def test_too_large_a_scene_is_refused_by_name() -> None:
     for k in range(MOST_ROWS // 4 + 1):
         world.create_body(Box(0.5, 0.5), position=(-40 + 0.6 * k, 0.25))
     with pytest.raises(
-        StepError, match=rf"the solver 'direct' takes at most {MOST_ROWS} rows, .* there are {MOST_ROWS + 4}"
+        TooLarge, match=rf"the solver 'direct' takes at most {MOST_ROWS} rows, .* there are {MOST_ROWS + 4}"
     ):
         world.step(DT)
 

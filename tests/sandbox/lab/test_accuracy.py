@@ -15,7 +15,7 @@ from typing import Any
 
 import pytest
 
-from engine import SOLVERS, Circle, Settings, World
+from engine import SOLVERS, Circle, Settings, TooLarge, World
 from sandbox.lab.accuracy import (
     KEYS,
     Outcome,
@@ -191,6 +191,16 @@ def test_what_a_solver_refuses_is_not_applicable(monkeypatch: pytest.MonkeyPatch
     outcome = sweep([refused], TINY[1:], Threads(), repeats=1)
     assert not outcome.rows
     assert "substeps = 7" in outcome.refused["sliding", "sequential_impulses"]
+
+
+def test_what_is_too_large_for_a_solver_is_not_applicable_and_not_lost(monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse(world: World, dt: float) -> None:
+        raise TooLarge("too much of it")
+
+    monkeypatch.setattr(World, "step", refuse)
+    outcome = sweep([SLIDING], TINY[1:], Threads(), repeats=1)
+    assert not outcome.rows
+    assert outcome.refused["sliding", "sequential_impulses"] == "too much of it"
 
 
 def test_json_has_these_keys(rows: list[Row]) -> None:
