@@ -75,7 +75,7 @@ def fill_to_share(world: World) -> None:
 
 
 def fill_few(world: World) -> None:
-    """As little as a solver of small scenes takes."""
+    """As little as a solver of small islands takes."""
     ground = world.create_body(Box(4, 1), kind="static")
     for k in range(3):
         world.create_body((Box(0.5, 0.5), Circle(0.3), Box(0.4, 0.6))[k], position=(0.7 * k - 0.7, 0.74))

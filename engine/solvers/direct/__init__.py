@@ -1,8 +1,9 @@
-"""direct: the exact answer of one step's constraints, for small scenes.
+"""direct: the exact answer of one step's constraints, for scenes of small islands.
 
 All joints and contacts are one mixed linear complementarity problem in float64, solved to rounding (pivoting.py): a
 joint's rate is 0, a contact presses or parts and does neither otherwise, and friction is as large as mu times what
 presses, against what slides, or as large as holding takes. What differs from the truth is then the time step alone.
+What no moving body links is a problem of its own: see islands.py.
 
 Velocities are solved with positions as the step begins; bodies move; and then positions are projected: Newton's method,
 whose steps are the same kind of problem, without friction, with the Jacobians of where bodies are (the shortest way, as
@@ -25,8 +26,9 @@ from engine.errors import TooLarge
 from engine.jit import kernel
 from engine.solvers import joint_rows
 from engine.solvers import sequential_impulses as talk
-from engine.solvers.direct.pivoting import solve as solve_exactly
-from engine.solvers.direct.rows import System, add_rates, assemble, write_contacts, write_joints, write_places
+from engine.solvers.direct.islands import group, link, with_any
+from engine.solvers.direct.rows import System, add_rates, write_contacts, write_joints, write_places
+from engine.solvers.direct.scaled import solve_islands
 from engine.solvers.moving import advance, begin, shift, take_speeds
 from engine.solvers.ngs import bouncing, note_approach
 from engine.solvers.ngs.contacts import store
@@ -42,8 +44,8 @@ if TYPE_CHECKING:
     from engine.state import State
 
 MOST_ROWS = 200
-"""Rows of a step's problem that are still solved: two for each contact point, up to ten for a joint. Time grows with
-their third power, and a step solves a dozen systems, or some hundreds where friction goes in circles."""
+"""Rows of an island that are still solved: two for each contact point, up to ten for a joint. Time grows with their
+third power, and a step solves a dozen systems, or some hundreds where friction goes in circles."""
 
 PROJECTIONS = 20
 """Most steps of Newton's method for positions; where little is wrong two or three do."""
@@ -53,30 +55,6 @@ CLOSE = 1e-13
 
 MOST = 0.2
 """Furthest that a projection moves a constraint [m], [rad]. Larger: what overlaps deeply is thrown about."""
-
-
-@kernel
-def scaled(matrix, b, system, count, x):
-    """Solves for impulses: rows are scaled so that the diagonal is 1. Returns by what part it may be wrong."""
-    scale = np.zeros(count)
-    low, high, ratio = system.low[:count].copy(), system.high[:count].copy(), system.ratio[:count].copy()
-    for i in range(count):
-        if matrix[i, i] > 0.0:
-            scale[i] = 1.0 / np.sqrt(matrix[i, i])
-    for i in range(count):
-        unit = scale[i] if scale[i] > 0.0 else 1.0
-        low[i], high[i] = low[i] / unit, high[i] / unit
-        if system.normal[i] >= 0:
-            ratio[i] = ratio[i] * scale[system.normal[i]] / unit
-        for j in range(count):
-            matrix[i, j] = matrix[i, j] * scale[i] * scale[j]
-        if scale[i] > 0.0:
-            matrix[i, i] = 1.0
-        b[i] = b[i] * scale[i]
-    error = solve_exactly(matrix, b, low, high, ratio, system.normal[:count], x)
-    for i in range(count):
-        x[i] = x[i] * scale[i]
-    return error
 
 
 @kernel
@@ -115,42 +93,53 @@ def keep(rows, arbiters, contacts, count, x):
 
 
 @kernel
-def expect_bounces(system, first, arbiters, contacts, bounces, count, threshold):
-    """Puts the speeds of bouncing into the problem. Returns whether there are any."""
-    k, any_bounces = first, False
+def expect_bounces(system, first, arbiters, contacts, bounces, count, threshold, size):
+    """Puts the speeds of bouncing into the problem of `size` rows. Returns which rows bounce: (size,) bool."""
+    k, found = first, np.zeros(size, np.bool_)
     for index in range(count):
         for i in range(arbiters[index].count):
             bounce = bounces[index, i]
             if bounces_at(bounce.restitution, bounce.speed, contacts[index, i].given_normal, threshold):
                 system.bias[k] = np.float64(bounce.restitution) * np.float64(bounce.speed)
-                any_bounces = True
+                found[k] = True
             k += 2
-    return any_bounces
+    return found
 
 
 @kernel
-def project(system, rows, frames, arbiters, contacts, count, motions, movers):
-    """Newton's method for positions."""
-    x = np.zeros(len(system.bias))
+def shift_all(system, count, motions, movers, x):
+    """Moves the bodies by M^-1 J^T x. A row that gives nothing is of an island that is done, and changes no bit."""
+    for k in range(count):
+        if x[k] == 0.0:
+            continue
+        for side in range(2):
+            row = system.body[k, side]
+            motion = motions[row]
+            along = Vec2(system.jacobian[k, 0] * x[k], system.jacobian[k, 1] * x[k])
+            arm = system.jacobian[k, 2 + side] * x[k]
+            shift(movers[row], motion.inverse_mass, motion.inverse_inertia, along, arm, 2.0 * side - 1.0)
+
+
+@kernel
+def project(system, rows, frames, arbiters, contacts, count, motions, movers, parents):
+    """Newton's method for positions, of each island until it is where it should be."""
+    errors = np.empty(len(system.bias))
+    found = write_places(system, rows, frames, arbiters, contacts, count, movers, MOST, errors)
+    islands = group(system, found, motions, parents)  # what positions do not hold, springs, links as it does before
     for _ in range(PROJECTIONS):
-        found, worst = write_places(system, rows, frames, arbiters, contacts, count, movers, MOST)
-        if worst <= CLOSE:
+        wanted = with_any(islands, errors[:found] > CLOSE)
+        if not wanted.any():
             return
-        matrix = assemble(system, found, motions)
-        scaled(matrix, system.bias[:found].copy(), system, found, x[:found])
-        for k in range(found):
-            for side in range(2):
-                row = system.body[k, side]
-                motion = motions[row]
-                along = Vec2(system.jacobian[k, 0] * x[k], system.jacobian[k, 1] * x[k])
-                arm = system.jacobian[k, 2 + side] * x[k]
-                shift(movers[row], motion.inverse_mass, motion.inverse_inertia, along, arm, 2.0 * side - 1.0)
+        x = np.zeros(found)
+        solve_islands(system, islands, wanted, motions, system.bias[:found].copy(), x)
+        shift_all(system, found, motions, movers, x)
+        write_places(system, rows, frames, arbiters, contacts, count, movers, MOST, errors)
 
 
 @kernel
 def solve_all(
     bodies, motions, movers, order, moved, arbiters, contacts, count, bounces, belts, joints, turns, slides, rows,
-    frames, system, steps,
+    frames, parents, system, steps,
 ):  # fmt: skip
     """One step. Tables are None where nothing calls for them. Returns by what part the impulses may be wrong."""
     step = steps[0]
@@ -165,23 +154,25 @@ def solve_all(
     b = system.bias[:size].copy()
     add_rates(system, size, motions, b)
     free = b - system.bias[:size]
-    error = scaled(assemble(system, size, motions), b, system, size, x)
+    islands = group(system, size, motions, parents)
+    error = solve_islands(system, islands, np.ones(len(islands.firsts) - 1, np.bool_), motions, b, x)
     keep(rows, arbiters, contacts, count, x)
     push(system, size, motions, x)
     take_speeds(moved, motions, movers)
     advance(moved, movers, step.dt)
     if bounces is not None:
-        if expect_bounces(system, first, arbiters, contacts, bounces, count, step.restitution_threshold):
-            again = np.zeros(size)
+        marks = expect_bounces(system, first, arbiters, contacts, bounces, count, step.restitution_threshold, size)
+        if marks.any():
+            again = x.copy()  # islands where nothing bounces are done
             b = free + system.bias[:size]
-            error = max(error, scaled(assemble(system, size, motions), b, system, size, again))
+            error = max(error, solve_islands(system, islands, with_any(islands, marks), motions, b, again))
             keep(rows, arbiters, contacts, count, again)
             push(system, size, motions, again - x)
             take_speeds(moved, motions, movers)
     if rows is not None:
         joint_rows.store(rows, frames, joints, turns, slides, step.parts)
     if step.position_correction != 0:
-        project(system, rows, frames, arbiters, contacts, count, motions, movers)
+        project(system, rows, frames, arbiters, contacts, count, motions, movers, parents)
     return error
 
 
@@ -192,13 +183,25 @@ def size_of(state: State) -> int:
     return 2 * touching + (0 if found is None else len(found.rows))
 
 
+def find_islands(state: State) -> int:
+    """Finds which bodies this step's problem links. Returns the number of rows of the largest island."""
+    pairs, found, motions = state.arbiters, joint_rows.rows_of(state), state.bodies.tables["motions"]
+    joints: tuple = (None, None, None)
+    if found is not None:
+        joints = (*found, state.joints.tables["joints"])
+    parents = state.scratch["direct, parents"] = np.empty(len(motions), np.int64)
+    arguments = (*joints, pairs.rows, pairs.count, motions, parents)
+    return int(link(*arguments))
+
+
 def apply_forces(state: State, settings: Settings) -> int:
     """Stage 2 of the talk. TooLarge if the scene is."""
-    size = size_of(state)
+    size = find_islands(state)
     if size > MOST_ROWS:
         raise TooLarge(
-            f"step {state.step_count + 1}, stage 'apply forces': the solver 'direct' takes at most {MOST_ROWS} rows, "
-            f"two for each contact point and up to ten for a joint, and there are {size}: take another solver"
+            f"step {state.step_count + 1}, stage 'apply forces': the solver 'direct' takes at most {MOST_ROWS} rows "
+            f"in an island of bodies that touch or are joined, two for each contact point and up to ten for a joint, "
+            f"and the largest has {size}: take another solver"
         )
     note_approach(state, settings)
     return talk.apply_forces(state, settings)
@@ -224,7 +227,7 @@ def solve(state: State, settings: Settings) -> None:
     arguments = (
         tables["bodies"], tables["motions"], movers, state.awake_order, state.moving, pairs.rows, pairs.contacts,
         pairs.count, bouncing(state), state.column("conveyor", state.shapes, "tangent_speed"), *joints,
-        empty_system(max(1, size_of(state))), state.steps,
+        state.scratch["direct, parents"], empty_system(max(1, size_of(state))), state.steps,
     )  # fmt: skip
     state.scratch["direct, error"] = solve_all(*arguments)
 

@@ -94,13 +94,13 @@ def write_contacts(system, first, arbiters, contacts, count, belts, step):
 
 
 @kernel
-def write_places(system, rows, frames, arbiters, contacts, count, movers, most):
+def write_places(system, rows, frames, arbiters, contacts, count, movers, most, errors):
     """Rows of what is wrong with positions, where the movers are: errors of joints, overlap. At most `most` [m] each.
 
-    Returns how many there are, and the largest error.
+    Writes how far each is off into `errors`. Returns how many there are.
     """
     zero = np.float64(0.0)
-    k, worst = 0, zero
+    k = 0
     if rows is not None:
         for i in range(len(rows)):
             row = rows[i]
@@ -115,7 +115,7 @@ def write_places(system, rows, frames, arbiters, contacts, count, movers, most):
                 system.low[k], wrong = 0.0, max(-error, zero)
             elif row.use == UPPER:
                 system.high[k], wrong = 0.0, max(error, zero)
-            worst = max(worst, wrong)
+            errors[k] = wrong
             k += 1
     for index in range(count):
         arbiter = arbiters[index]
@@ -128,9 +128,9 @@ def write_places(system, rows, frames, arbiters, contacts, count, movers, most):
             arm1, arm2 = cross(rotate(a.q, r1), normal), cross(rotate(b.q, r2), normal)
             write(system, k, arbiter.body1, arbiter.body2, normal, arm1, arm2, max(gap, -most))
             system.low[k] = 0.0
-            worst = max(worst, -gap)
+            errors[k] = -gap
             k += 1
-    return k, worst
+    return k
 
 
 @kernel

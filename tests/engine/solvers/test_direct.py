@@ -7,8 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from engine import Box, Circle, TooLarge, World
-from engine.solvers.direct import MOST_ROWS, pivoting
+from engine import Box, Circle, World
+from engine.solvers.direct import pivoting
 from tests.engine.worlds import DT, floor, run
 
 G = 10.0
@@ -229,17 +229,6 @@ def test_a_regular_system_is_solved_and_a_singular_one_gives_its_least_answer() 
     far = np.full(3, np.inf)
     assert pivoting.solve(np.ones((3, 3)), np.full(3, -3.0), -far, far, np.zeros(3), none, found) < 1e-12
     np.testing.assert_allclose(found, 1.0, rtol=1e-6)  # x1 + x2 + x3 = 3
-
-
-def test_too_large_a_scene_is_refused_by_name() -> None:
-    world = new()
-    floor(world)
-    for k in range(MOST_ROWS // 4 + 1):
-        world.create_body(Box(0.5, 0.5), position=(-40 + 0.6 * k, 0.25))
-    with pytest.raises(
-        TooLarge, match=rf"the solver 'direct' takes at most {MOST_ROWS} rows, .* there are {MOST_ROWS + 4}"
-    ):
-        world.step(DT)
 
 
 def test_single_precision_rounds_and_does_no_more() -> None:
