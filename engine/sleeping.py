@@ -37,12 +37,12 @@ def moves(motion):
 def stir(motions, one, other):
     """Two bodies touch or are joined: neither is still if the other goes its way."""
     if moves(motions[one]) or moves(motions[other]):
-        rouse(motions, one, other)
+        forget_stillness(motions, one, other)
 
 
 @kernel
-def rouse(motions, one, other):
-    """Neither has been still so far."""
+def forget_stillness(motions, one, other):
+    """Neither of two bodies has been still so far."""
     motions[one].still = 0
     motions[other].still = 0
 
@@ -55,7 +55,7 @@ def stir_driven(indices, arbiters, belts, pairs, motions):
         if arbiter.count > 0:
             stir(motions, arbiter.body1, arbiter.body2)
             if belts[arbiter.shape1] != 0 or belts[arbiter.shape2] != 0:
-                rouse(motions, arbiter.body1, arbiter.body2)
+                forget_stillness(motions, arbiter.body1, arbiter.body2)
     for k in range(len(pairs)):
         stir(motions, pairs[k, 0], pairs[k, 1])
 

@@ -6,10 +6,17 @@ what is joined without error within the step is so afterwards.
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from engine.jit import kernel
+from engine.solvers.soft_step.movers import finish
 from engine.trigonometry import cos_sin
+
+if TYPE_CHECKING:
+    from engine.settings import Settings
+    from engine.state import State
 
 
 @kernel
@@ -54,3 +61,10 @@ def take_speeds(order, motions, movers):
     for k in range(len(order)):
         motion, mover = motions[order[k]], movers[order[k]]
         mover.vx, mover.vy, mover.w = motion.vx, motion.vy, motion.w
+
+
+def update_positions(state: State, settings: Settings) -> int:
+    """Stage 4 of the talk: bodies go where velocities and corrections took them."""
+    tables, order = state.bodies.tables, state.awake_order
+    found = finish(0, len(order), order, tables["bodies"], tables["motions"], state.scratch["movers"], None)
+    return -1 if found >= 0 else int(order[-1 - found])

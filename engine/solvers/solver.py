@@ -25,6 +25,16 @@ def rounded_step(dt: float) -> float:
     return 2.0 ** round(math.log2(60.0 * dt)) / 60.0
 
 
+def solve_planned(
+    state: State, settings: Settings, solve_all: Callable[..., Any], arguments: Callable[[State, Settings], tuple]
+) -> None:
+    """Solves with what `arguments` looks up, anew only where content, settings or what touches changed."""
+    state.follow_contacts()
+    if state.solve_plan is None:
+        state.solve_plan = arguments(state, settings)
+    solve_all(*state.solve_plan)
+
+
 @dataclass(frozen=True)
 class Solver:
     """A way to keep contacts and joints. The stages that can lose a body return its row, or -1."""

@@ -24,7 +24,7 @@ from engine.solvers.avbd.tables import BODY, ROW
 from engine.solvers.joint_rows import LACKING, awake_rows, prepare, store
 from engine.solvers.soft_step import movers
 from engine.solvers.soft_step.tables import drive_dtype, mover_dtype
-from engine.solvers.solver import Solver
+from engine.solvers.solver import Solver, solve_planned
 
 if TYPE_CHECKING:
     from engine.settings import Settings
@@ -117,10 +117,7 @@ def solve_all(
 
 def solve(state: State, settings: Settings) -> None:
     """The whole step."""
-    state.follow_contacts()
-    if state.solve_plan is None:
-        state.solve_plan = arguments(state, settings)
-    solve_all(*state.solve_plan)
+    solve_planned(state, settings, solve_all, arguments)
 
 
 def arguments(state: State, settings: Settings) -> tuple:

@@ -29,11 +29,10 @@ from engine.solvers import sequential_impulses as talk
 from engine.solvers.direct.islands import group, link, with_any
 from engine.solvers.direct.rows import System, add_rates, write_contacts, write_joints, write_places
 from engine.solvers.direct.scaled import solve_islands
-from engine.solvers.moving import advance, begin, shift, take_speeds
+from engine.solvers.moving import advance, begin, shift, take_speeds, update_positions
 from engine.solvers.ngs import bouncing, note_approach
 from engine.solvers.ngs.contacts import store
 from engine.solvers.soft_step import table
-from engine.solvers.soft_step.movers import finish
 from engine.solvers.soft_step.restitution import bounces_at
 from engine.solvers.soft_step.tables import mover_dtype
 from engine.solvers.solver import Solver
@@ -230,13 +229,6 @@ def solve(state: State, settings: Settings) -> None:
         state.scratch["direct, parents"], empty_system(max(1, size_of(state))), state.steps,
     )  # fmt: skip
     state.scratch["direct, error"] = solve_all(*arguments)
-
-
-def update_positions(state: State, settings: Settings) -> int:
-    """Stage 4 of the talk: bodies go where velocities and corrections took them."""
-    tables, order = state.bodies.tables, state.awake_order
-    found = finish(0, len(order), order, tables["bodies"], tables["motions"], state.scratch["movers"], None)
-    return -1 if found >= 0 else int(order[-1 - found])
 
 
 DIRECT = Solver(

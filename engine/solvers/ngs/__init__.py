@@ -18,12 +18,11 @@ from engine.lanes import const
 from engine.mixing import RULES
 from engine.solvers import joint_rows
 from engine.solvers import sequential_impulses as talk
-from engine.solvers.moving import advance, begin, take_speeds
+from engine.solvers.moving import advance, begin, take_speeds, update_positions
 from engine.solvers.ngs import contacts as touching
 from engine.solvers.ngs import joints as joined
 from engine.solvers.sequential_impulses import solve_contacts
 from engine.solvers.soft_step import table
-from engine.solvers.soft_step.movers import finish
 from engine.solvers.soft_step.tables import mover_dtype
 from engine.solvers.solver import Solver
 from engine.tables import empty
@@ -144,13 +143,6 @@ def solve(state: State, settings: Settings) -> None:
         pairs.count, points, bouncing(state), *joints, state.steps,
     )  # fmt: skip
     solve_all(*arguments)
-
-
-def update_positions(state: State, settings: Settings) -> int:
-    """Stage 4 of the talk: bodies go where velocities and corrections took them."""
-    tables, order = state.bodies.tables, state.awake_order
-    found = finish(0, len(order), order, tables["bodies"], tables["motions"], state.scratch["movers"], None)
-    return -1 if found >= 0 else int(order[-1 - found])
 
 
 NGS = Solver(

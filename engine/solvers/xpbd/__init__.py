@@ -21,7 +21,7 @@ from engine.solvers import soft_step
 from engine.solvers.joint_rows import LACKING, awake_rows, prepare, store
 from engine.solvers.soft_step import movers
 from engine.solvers.soft_step.tables import drive_dtype, mover_dtype
-from engine.solvers.solver import Solver
+from engine.solvers.solver import Solver, solve_planned
 from engine.solvers.xpbd import contacts, joints
 from engine.solvers.xpbd.tables import pair_dtype, point_dtype
 from engine.tables import REALS, empty
@@ -68,10 +68,7 @@ def solve_all(
 
 def solve(state: State, settings: Settings) -> None:
     """All substeps."""
-    state.follow_contacts()
-    if state.solve_plan is None:
-        state.solve_plan = arguments(state, settings)
-    solve_all(*state.solve_plan)
+    solve_planned(state, settings, solve_all, arguments)
 
 
 def arguments(state: State, settings: Settings) -> tuple:

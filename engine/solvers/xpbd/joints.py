@@ -7,7 +7,7 @@ from engine.lanes import clamp, const, over
 from engine.solvers.joint_rows.impulses import Speeds, pushed, rate
 from engine.solvers.joint_rows.rows import place
 from engine.solvers.joint_rows.tables import ACROSS_AXIS, DRIVES, HOLDS, LOWER, SPRINGS, UPPER, X
-from engine.solvers.xpbd.contacts import move
+from engine.solvers.xpbd.contacts import keep_speeds, move
 from engine.vec2 import Vec2
 
 
@@ -107,14 +107,6 @@ def solve_positions(rows, frames, rests, movers, step):
         change, row.impulse = total - row.impulse, total
         move_row(movers, row, frame, change, step.inverse_h)
         k += 1
-
-
-@kernel
-def keep_speeds(movers, frame, speeds):
-    """Writes how a joint's bodies move after an impulse."""
-    one, other = movers[frame.body1], movers[frame.body2]
-    one.vx, one.vy, one.w = speeds.v1.x, speeds.v1.y, speeds.w1
-    other.vx, other.vy, other.w = speeds.v2.x, speeds.v2.y, speeds.w2
 
 
 @kernel
