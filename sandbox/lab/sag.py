@@ -19,6 +19,7 @@ from engine.softness import stiffness
 from sandbox.lab.structure import GROUND, Point, Structure
 
 MARGIN = 1.2  # "and a fifth": what a pile may sink deeper than predicted
+LEAST = 0.8  # and but a fifth: what springs must give way of it, or they do not carry what lies on them
 BOX_INERTIA = 1.0 / 6.0  # of a unit square, in parts of its mass [m^2]
 
 

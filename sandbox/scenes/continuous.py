@@ -13,6 +13,7 @@ from sandbox.scenes.registry import scene
 
 HOUSE = ((-8.0, 0.0), (8.0, 0.0), (8.0, 7.0), (0.0, 12.0), (-8.0, 7.0))
 BULLETS, BULLET_SPEED = 16, 200.0
+BULLET_RADII = (0.15, 0.1, 0.25)  # [m]
 MIDDLE = 5.0  # height of the middle of the house [m]
 
 WALL_X, ROW = 10.0, 1.2
@@ -27,10 +28,32 @@ def outside_of_house(world: World) -> float:
     return float(max(((place - corners) * out).sum(axis=1).max() for place in world.positions[1:]))
 
 
+def energy_of_bullets(world: World) -> float:
+    """What moves, in parts of what moved in the beginning."""
+    masses = world.body_records()["mass"][1:]
+    return float(masses @ (world.velocities[1:] ** 2).sum(axis=1) / (masses.sum() * BULLET_SPEED**2))
+
+
 @scene(
     "Continuous/Bounce House",
-    shows=Criterion(
-        "of a bullet is out of the house at most", outside_of_house, unit="m", after=5.0, at_most=0.0, throughout=True
+    shows=(
+        Criterion(
+            "of a bullet is out of the house at most",
+            outside_of_house,
+            unit="m",
+            after=5.0,
+            at_most=0.0,
+            at_least=-2.0 * max(BULLET_RADII),  # they have come to the walls
+            throughout=True,
+        ),
+        Criterion(
+            "after some bounces without loss, of their energy, the bullets have",
+            energy_of_bullets,
+            unit="",
+            after=0.3,  # each has flown 60 m in a house of 12
+            at_least=0.9,
+            at_most=1.1,
+        ),
     ),
     view=(0.0, MIDDLE, 14.0),
     gravity=(0.0, 0.0),
@@ -38,7 +61,7 @@ def outside_of_house(world: World) -> float:
 def bounce_house(world: World) -> None:
     """Bullets of 200 m/s in a closed house, whose walls have no thickness: none gets out, nor through another."""
     world.create_body(Chain(HOUSE, closed=True), kind="static", friction=0.0, restitution=1.0)
-    shapes = (Circle(0.15), Circle(0.1), Circle(0.25))
+    shapes = tuple(map(Circle, BULLET_RADII))
     for k in range(BULLETS):
         turn = 2.0 * math.pi * (k + 0.5) / BULLETS
         out = (math.cos(turn), math.sin(turn))
@@ -48,15 +71,29 @@ def bounce_house(world: World) -> None:
         )  # fmt: skip
 
 
+def at_walls(world: World) -> float:
+    """Part of what flies that is so near to its wall that it has hit it, or all but."""
+    return float(np.mean(world.positions[-len(SPEEDS) * 6 :, 0] > WALL_X - 1.5))
+
+
 @scene(
     "Continuous/Thin Walls",
-    shows=Criterion(
-        "is how far anything is behind its wall",
-        lambda world: float((world.positions[-len(SPEEDS) * 6 :, 0]).max() - WALL_X),
-        unit="m",
-        after=3.0,
-        at_most=0.0,
-        throughout=True,
+    shows=(
+        Criterion(
+            "is how far anything is behind its wall",
+            lambda world: float((world.positions[-len(SPEEDS) * 6 :, 0]).max() - WALL_X),
+            unit="m",
+            after=3.0,
+            at_most=0.0,
+            throughout=True,
+        ),
+        Criterion(
+            "of what flies, there have come to their walls",
+            at_walls,
+            unit="",
+            after=0.45,  # the slowest needs 12 / 30 s
+            at_least=0.75,  # but for what is thrown back, by its spin or for it hits with a corner
+        ),
     ),
     view=(4.0, 7.0, 18.0),
 )

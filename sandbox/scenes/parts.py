@@ -8,7 +8,7 @@ from collections.abc import Callable
 import numpy as np
 
 from engine import Body, Box, World
-from sandbox.lab.sag import MARGIN
+from sandbox.lab.sag import LEAST, MARGIN, is_soft
 
 ROUGH = 0.6  # friction of what shall stand
 GRAVITY = 10.0  # of a world, unless a scene says otherwise [m/s^2]
@@ -26,9 +26,25 @@ def and_a_fifth(predicted: Predict, most: float = math.inf) -> Predict:
     return lambda world, dt: min(MARGIN * predicted(world, dt), most)
 
 
+def but_a_fifth(predicted: Predict, most: float = math.inf) -> Predict:
+    """What springs must give way at least, where so much is predicted: what they carry, presses on them.
+
+    most: what may be at most, whatever is predicted. Contacts without springs may stay in no overlap at all.
+    """
+    return lambda world, dt: min(LEAST * predicted(world, dt), most) if is_soft(world) else -math.inf
+
+
 def distance_from(world: World, index: int, x: float, y: float) -> float:
     """How far a body, by its number of creation, is from a point [m]."""
     return math.dist(world.positions[index], (x, y))
+
+
+def nearest(world: World, index: int) -> float:
+    """How far the two bodies that are nearest to each other are apart, middle from middle [m]; index: of the first."""
+    places = world.positions[index:]
+    away = places[:, None] - places
+    apart = np.hypot(away[..., 0], away[..., 1])
+    return float(apart[np.triu_indices(len(places), 1)].min())
 
 
 def moved(world: World, index: int, places: np.ndarray) -> float:

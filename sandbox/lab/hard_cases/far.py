@@ -10,7 +10,7 @@ from engine import Box, World
 from sandbox.lab.hard_cases.case import Case, variant
 from sandbox.lab.sag import predicted_column
 from sandbox.scenes.criterion import Criterion
-from sandbox.scenes.parts import ROUGH, and_a_fifth
+from sandbox.scenes.parts import ROUGH, and_a_fifth, but_a_fifth
 
 COUNT, STANDS = 10, 10.0  # boxes; [s]
 
@@ -31,6 +31,7 @@ def stands(far: float) -> tuple[Criterion, Criterion]:
             unit="m",
             after=STANDS,
             at_most=and_a_fifth(lambda world, dt: predicted_column(world, dt, COUNT)),
+            at_least=but_a_fifth(lambda world, dt: predicted_column(world, dt, COUNT)),
         ),
         Criterion(
             "a box is off its place sideways by",

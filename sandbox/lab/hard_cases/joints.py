@@ -31,9 +31,17 @@ def energy_of_swing(world: World) -> float:
 BALL_AND_CHAIN = (
     gaps(SWINGS, at_most=0.01 * LENGTH),
     Criterion("the energy has grown, in parts of the fall, to", energy_of_swing, "", SWINGS, 0.01, throughout=True),
+    Criterion(
+        "the fastest of the ball, in parts of what it gains in its fall, is",
+        lambda world: math.hypot(*world.velocities[-1]) / math.sqrt(2.0 * GRAVITY * (LENGTH + BALL)),
+        unit="",
+        after=SWINGS,
+        at_least=0.95,  # the chain, a sixth of its mass, takes some of it or gives some
+        throughout=True,
+    ),
 )
 
-BRIDGE_160 = (gaps(6.0, at_most=0.1 * THICK), find_scene("Joints/Bridge").shows[1])  # and nothing falls through
+BRIDGE_160 = (gaps(6.0, at_most=0.1 * THICK), *find_scene("Joints/Bridge").shows[1:])  # and nothing falls through
 
 PLANKS, SPAN, SAG, CROSSED = 500, 250.0, 25.0, 10.0  # [m], [s]
 DECK = hanging((-0.5 * SPAN, 0.0), (0.5 * SPAN, 0.0), SAG, PLANKS)
@@ -66,15 +74,29 @@ def catenary(points: list[tuple[float, float]]) -> float:
 
 HANGS = catenary(DECK)
 
+
+def middle(world: World) -> float:
+    """Height of the middle between the banks [m]."""
+    return float(world.positions[PLANKS // 2 : PLANKS // 2 + 2, 1].mean())
+
+
 BRIDGE_500 = (
     gaps(CROSSED, at_most=0.1 * THICK),
     Criterion(
         "the middle hangs, in parts of its catenary, at",
-        lambda world: -float(world.positions[PLANKS // 2 : PLANKS // 2 + 2, 1].mean()) / HANGS,
+        lambda world: -middle(world) / HANGS,
         unit="",
         after=CROSSED,
         at_least=0.98,
         at_most=1.02,
+    ),
+    Criterion(
+        "the middle has been off where it began by",
+        lambda world: abs(SAG + middle(world)),
+        unit="m",
+        after=CROSSED,
+        at_least=abs(SAG - HANGS),  # it begins so far from its rest, and swings about it
+        throughout=True,
     ),
 )
 

@@ -9,10 +9,13 @@ import numpy as np
 
 from engine import Box, Circle, World
 from sandbox.lab.hard_cases.case import Case, Stage, case, variant
+from sandbox.lab.sag import BOX_INERTIA, predicted_sink
+from sandbox.lab.structure import GROUND, Point, Structure
 from sandbox.scenes.criterion import Criterion
-from sandbox.scenes.parts import GRAVITY, ROUGH, add_floor
+from sandbox.scenes.parts import GRAVITY, ROUGH, add_floor, but_a_fifth
 from sandbox.scenes.robustness.crowds import add_room, outside, overlap
 from sandbox.scenes.stacking.stacks import add_stack
+from sandbox.simulation import TIME_STEP
 
 # --- a load is taken off ----------------------------------------------------------------------------------------------
 
@@ -32,6 +35,30 @@ def take_off(stage: Stage, number: int, dt: float) -> float:
     if number == round(TAKEN / dt):
         stage.destroy(UNDER + 1)
     return dt
+
+
+def carrying(load: float) -> Structure:
+    """The boxes and the ball upon them."""
+    points = [Point(k - 1 if k else GROUND, k, x, float(k)) for k in range(UNDER) for x in (-0.5, 0.5)]
+    points.append(Point(UNDER - 1, UNDER, 0.0, float(UNDER)))
+    centers = [(0.0, 0.5 + k) for k in range(UNDER)] + [(0.0, UNDER + BALL)]
+    masses = np.append(np.ones(UNDER), load)
+    inertias = np.append(np.full(UNDER, BOX_INERTIA), 0.5 * load * BALL**2)
+    return Structure(np.array(centers), masses, inertias, points)
+
+
+def relieved(load: float) -> tuple[Criterion, ...]:
+    """It was pressed down, as far as statics say, and comes back no further than it was put."""
+    return (
+        *RELIEVED,
+        Criterion(
+            "under its load, the top box has sunk by",
+            lambda world: UNDER - 0.5 - float(world.positions[UNDER, 1]),
+            unit="m",
+            after=TAKEN,
+            at_least=but_a_fifth(lambda world, dt: predicted_sink(world, dt, carrying(load), UNDER - 1)),
+        ),
+    )
 
 
 RELIEVED = (
@@ -74,6 +101,15 @@ def come_and_go(stage: Stage, number: int, dt: float) -> float:
     return dt
 
 
+FALLS = 2.0  # [s]: from the ceiling it is 1.5 s to the ground
+
+
+def settled(world: World) -> float:
+    """The highest of the bodies that came in long enough ago to have fallen [m]."""
+    newest = math.ceil(FALLS / (EVERY * TIME_STEP))
+    return float(world.positions[1:-newest, 1].max())
+
+
 COMING_AND_GOING = (
     Criterion("a body is out of the room by", lambda world: outside(world, HALF, HEIGHT), "m", LASTS, 0.0),
     Criterion(
@@ -90,6 +126,13 @@ COMING_AND_GOING = (
         unit="",
         after=LASTS,
         at_most=0.0,
+    ),
+    Criterion(
+        "the highest that has been there for two seconds lies at",
+        settled,
+        unit="m",
+        after=LASTS,
+        at_most=0.5 * HEIGHT,  # all that there are fill a fifth of the room
     ),
 )
 
@@ -131,7 +174,7 @@ CASES: dict[str, Case] = {
             "Stacking/Vertical Stack 10",
             partial(loaded, load=float(load)),
             f"A ball of {load} boxes' mass is taken off a stack.",
-            shows=RELIEVED,
+            shows=relieved(float(load)),
             program=take_off,
             quick=True,
         )

@@ -9,6 +9,7 @@ from sandbox.lab.hard_cases.case import Case, case, variant
 from sandbox.lab.sag import predicted_pyramid
 from sandbox.scenes.parts import ROUGH, add_floor
 from sandbox.scenes.registry import Build
+from sandbox.scenes.robustness.stacks import LEANS
 from sandbox.scenes.stacking.stacks import add_stack, column_stands, stands
 
 BASE = 20
@@ -39,7 +40,7 @@ CASES: dict[str, Case] = {
     "stack_80": variant(
         "Stacking/Vertical Stack 40", column(80), "Eighty boxes: four times the sag of forty.", shows=column_stands(80)
     ),
-    "tilted_stack": case("Robustness/Tilted Stack", quick=True),
+    "tilted_stack": case("Robustness/Tilted Stack", shows=LEANS, quick=True),
     "circle_stack": case("Robustness/Circle Stack", quick=True),
     "capsule_stack": case("Shapes/Capsules"),
     "pyramid_20": variant(

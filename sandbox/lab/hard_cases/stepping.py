@@ -7,7 +7,7 @@ from sandbox.lab.hard_cases.case import Case, Stage, variant
 from sandbox.lab.references import flight, flight_lag
 from sandbox.lab.sag import predicted_column
 from sandbox.scenes.criterion import Criterion
-from sandbox.scenes.parts import GRAVITY, add_floor, and_a_fifth
+from sandbox.scenes.parts import GRAVITY, add_floor, and_a_fifth, but_a_fifth
 from sandbox.scenes.stacking.stacks import add_stack, column_stands
 from sandbox.simulation import TIME_STEP
 
@@ -37,6 +37,7 @@ VARIED = (
         at_most=and_a_fifth(
             lambda world, dt: predicted_column(world, LONGEST * dt, COUNT)
         ),  # as the longest would have
+        at_least=but_a_fifth(lambda world, dt: predicted_column(world, SHORTEST * dt, COUNT)),  # and as the shortest
     ),
     column_stands(COUNT)[1],
 )

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from engine import Box, Circle, World
-from sandbox.lab.references import apex, flight_lag, friction_seen, rolling_distance
+from sandbox.lab.references import apex, flight_lag, friction_seen, rolling_distance, slope_acceleration
 from sandbox.scenes.criterion import Criterion
 from sandbox.scenes.parts import GRAVITY, add_floor
 from sandbox.scenes.registry import scene
@@ -43,6 +43,25 @@ def friction_error(world: World) -> float:
         if math.tan(angle) > mu or math.hypot(*box.velocity) > STUCK:
             worst = max(worst, abs(friction_seen(angle, distance, GRAVITY, world.time) / mu - 1.0))
     return 100.0 * worst
+
+
+def slid(world: World) -> float:
+    """How far the box that slid least of those that must has come, in parts of (sin - mu cos) g t^2 / 2."""
+    parts = []
+    for (mu, angle, x, y), box in zip(slopes(), world.bodies[1::2], strict=True):
+        way = 0.5 * slope_acceleration(angle, mu, GRAVITY) * world.time**2
+        if way > 0.0:
+            parts.append(math.dist(box.position, box_on(angle, x, y)) / way)
+    return min(parts)
+
+
+SLID = Criterion(  # where nothing falls asleep: what begins to slide so slowly would be held
+    "where it is too steep, a box has slid, in parts of what is left to pull it,",
+    slid,
+    unit="",
+    after=WATCHED,
+    at_least=0.5,  # the pull is 2 % of what friction takes: half of it is 1 % of friction
+)
 
 
 @scene(

@@ -45,6 +45,13 @@ DENSITY, LOAD = 20.0, 2.0  # of its planks and of what rolls on it [kg/m^2]
             after=6.0,
             at_most=0.0,
         ),
+        Criterion(
+            "of six stones that roll onto it, there have come:",
+            lambda world: float(sum(abs(body.position.x) < 0.5 * SPAN for body in world.bodies[1 + PLANKS :][:6])),
+            unit="",
+            after=6.0,
+            at_least=6.0,  # the last has 7.4 m to go, at 2 m/s
+        ),
     ),
     view=(0.0, 0.0, 72.0),
 )

@@ -24,6 +24,13 @@ TOP = STEPS * RISE
             at_most=0.2,
             throughout=True,
         ),
+        Criterion(
+            "the middles of all bones are, on average, at a height of",
+            lambda w: float(w.positions[1:, 1].mean()),
+            "m",
+            5.0,
+            at_most=0.5 * TOP,  # they have fallen, from above the stair's top to below its middle
+        ),
     ),
     view=(0.0, 4.2, 11.5),
 )

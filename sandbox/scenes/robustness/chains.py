@@ -16,7 +16,7 @@ from sandbox.scenes.registry import Build, scene
 
 LINKS, LENGTH, WIDTH = 20, 10.0, 0.1  # [m]
 END = 0.6  # radius of what hangs on it [m]
-OPEN = 0.02  # how far its joint stands open in the beginning [m]
+OPEN, CLOSES = 0.02, 1.0  # how far its joint stands open in the beginning [m]; until when it closes [s]
 CALM = 0.05  # [m/s]
 
 
@@ -40,10 +40,18 @@ def hung(ratio: float, links: int = LINKS) -> Predict:
     return predicted
 
 
-def hangs(ratio: float) -> tuple[Criterion, Criterion]:
+def hangs(ratio: float) -> tuple[Criterion, ...]:
     """Joints open as the springs say that they are, at most, and nothing moves."""
     return (
         Criterion("a joint's anchors are apart by", gap, "m", 8.0, at_most=and_a_fifth(hung(ratio))),
+        Criterion(
+            "while its open joint closes, the fastest moves at",
+            fastest,
+            unit="m/s",
+            after=CLOSES,
+            at_least=0.5 * OPEN / CLOSES,  # of two that come together in time, one goes half the way
+            throughout=True,
+        ),
         Criterion("the fastest link still moves at", fastest, "m/s", 8.0, at_most=CALM),
     )
 

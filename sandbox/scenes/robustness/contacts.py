@@ -9,7 +9,7 @@ import numpy as np
 from engine import Box, Capsule, Chain, Circle, Polygon, Segment, Shape, World
 from engine.constants import SLOP
 from sandbox.scenes.criterion import Criterion
-from sandbox.scenes.parts import ROUGH, add_floor
+from sandbox.scenes.parts import GRAVITY, ROUGH, add_floor
 from sandbox.scenes.registry import scene
 from sandbox.scenes.robustness.chains import CALM, fastest
 
@@ -56,6 +56,16 @@ def upon(x: float, up: float) -> tuple[float, float]:
     return c * x - s * up, s * x + c * up
 
 
+DOWN, SLIDES = -4.5, 0.8  # where the one without friction begins [m], and until when it is on the slope [s]
+
+
+def slid(world: World) -> float:
+    """How far that has come down the slope, in parts of g sin(slope) t^2 / 2."""
+    c, s = math.cos(SLOPE), math.sin(SLOPE)
+    way = DOWN - float(world.positions[-1] @ (c, s))
+    return way / (0.5 * GRAVITY * s * SLIDES**2)
+
+
 def crept(world: World) -> float:
     """How far a box has slid, along the slope, at most [m]."""
     c, s = math.cos(SLOPE), math.sin(SLOPE)
@@ -65,7 +75,17 @@ def crept(world: World) -> float:
 
 @scene(
     "Robustness/Friction Creep",
-    shows=Criterion("a box has crept along the slope by", crept, "m", 10.0, at_most=1e-3),
+    shows=(
+        Criterion("a box has crept along the slope by", crept, "m", 10.0, at_most=1e-3),
+        Criterion(
+            "the box without friction has slid, in parts of g sin(slope) t^2 / 2,",
+            slid,
+            unit="",
+            after=SLIDES,
+            at_least=0.99,
+            at_most=lambda world, dt: 1.01 + dt / SLIDES,  # symplectic Euler's is g h t / 2 further
+        ),
+    ),
     view=(0.0, 1.0, 8.0),
 )
 def friction_creep(world: World) -> None:
@@ -74,12 +94,13 @@ def friction_creep(world: World) -> None:
     for k, side in enumerate(SIDES):
         place = upon(3.0 * (k - 1), 0.5 * side)
         world.create_body(Box(side, side), position=place, angle=SLOPE, friction=GRIP)
-    world.create_body(Box(0.4, 0.4), position=upon(-4.5, 0.2), angle=SLOPE, friction=0.0)  # lest nothing happens
+    world.create_body(Box(0.4, 0.4), position=upon(DOWN, 0.2), angle=SLOPE, friction=0.0)  # lest nothing happens
 
 
 # --- seams ------------------------------------------------------------------------------------------------------------
 
 SPEED, TILES = 5.0, 40  # [m/s]
+BEGIN = -12.0 + 2.2 * np.arange(3)  # where they begin [m]
 SLIDERS: tuple[tuple[Shape, float], ...] = ((Box(0.8, 0.8), 0.4), (Box(1.6, 0.4), 0.2), (Capsule(0.7, 0.3), 0.3))
 
 
@@ -102,6 +123,13 @@ SMOOTH = (
         after=3.0,
         at_most=0.01 * SPEED,
     ),
+    Criterion(
+        "what slides over seams has come, in parts of v t, to",
+        lambda world: float((world.positions[1:, 0] - BEGIN).min()) / (3.0 * SPEED),
+        unit="",
+        after=3.0,
+        at_least=0.99,  # it may lose a hundredth of its speed
+    ),
 )
 
 
@@ -115,13 +143,27 @@ def seams(world: World) -> None:
     floor = world.create_body(kind="static")
     for k in range(TILES):
         floor.add_shape(Box(1.0, 1.0), offset=(k - 14.5, -0.5), friction=0.0)
-    for k, (shape, above) in enumerate(SLIDERS):
-        world.create_body(shape, position=(-12.0 + 2.2 * k, above), velocity=(SPEED, 0.0), friction=0.0)
+    for x, (shape, above) in zip(BEGIN.tolist(), SLIDERS, strict=True):
+        world.create_body(shape, position=(x, above), velocity=(SPEED, 0.0), friction=0.0)
 
 
 # --- spinning ---------------------------------------------------------------------------------------------------------
 
 SPIN, CELL = 100.0, 3.0  # [rad/s]; half of the cell's side [m]
+
+
+HUBS = np.array([(-1.5, -0.5), (1.5, 0.5), (0.0, 1.8)])  # where the middles begin [m]
+FLIGHT = 0.4  # nothing touches anything until then [s]: the lowest falls 0.8 of 1.7 m
+
+
+def turned(world: World) -> float:
+    """How far the one that has turned least has turned, in parts of w t."""
+    return float(np.abs(world.body_records()["angle"][1:]).min()) / (SPIN * FLIGHT)
+
+
+def dropped(world: World) -> float:
+    """How far the one that has fallen least has fallen, in parts of g t^2 / 2."""
+    return float((HUBS[:, 1] - world.positions[1:, 1]).min()) / (0.5 * GRAVITY * FLIGHT**2)
 
 
 def escaped(world: World) -> float:
@@ -141,6 +183,22 @@ def escaped(world: World) -> float:
             at_most=1.01,
             throughout=True,
         ),
+        Criterion(  # in flight nothing turns it slower or faster, and nothing holds it
+            "the slowest turns, of the speed it began with, at",
+            lambda world: float(np.abs(world.angular_velocities[1:]).min()) / SPIN,
+            unit="",
+            after=FLIGHT,
+            at_least=0.99,
+        ),
+        Criterion("in flight, each has turned, in parts of w t, by", turned, "", FLIGHT, at_least=0.99, at_most=1.01),
+        Criterion(
+            "in flight, each has fallen, in parts of g t^2 / 2, by",
+            dropped,
+            unit="",
+            after=FLIGHT,
+            at_least=0.99,
+            at_most=lambda world, dt: 1.01 + dt / FLIGHT,  # symplectic Euler's is g h t / 2 lower
+        ),
     ),
     view=(0.0, 0.0, 8.0),
 )
@@ -148,11 +206,11 @@ def fast_spin(world: World) -> None:
     """A rod, a cross and a triangle turn sixteen times a second in a cell whose walls have no thickness."""
     corners = ((-CELL, -CELL), (CELL, -CELL), (CELL, CELL), (-CELL, CELL))
     world.create_body(Chain(corners, closed=True), kind="static", friction=ROUGH)
-    world.create_body(Box(1.6, 0.1), position=(-1.5, -0.5), angular_velocity=SPIN, friction=ROUGH)
-    cross = world.create_body(Box(1.2, 0.15), position=(1.5, 0.5), angular_velocity=-SPIN, friction=ROUGH)
+    world.create_body(Box(1.6, 0.1), position=tuple(HUBS[0]), angular_velocity=SPIN, friction=ROUGH)
+    cross = world.create_body(Box(1.2, 0.15), position=tuple(HUBS[1]), angular_velocity=-SPIN, friction=ROUGH)
     cross.add_shape(Box(0.15, 1.2), friction=ROUGH)
     triangle = Polygon(((-0.5, -0.3), (0.5, -0.3), (0.0, 0.6)))
-    world.create_body(triangle, position=(0.0, 1.8), angular_velocity=SPIN, friction=ROUGH)
+    world.create_body(triangle, position=tuple(HUBS[2]), angular_velocity=SPIN, friction=ROUGH)
 
 
 # --- at rest ----------------------------------------------------------------------------------------------------------

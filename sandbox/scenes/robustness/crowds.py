@@ -7,10 +7,11 @@ import math
 import numpy as np
 
 from engine import Body, Box, Circle, World
+from engine.constants import SLOP
 from sandbox.lab.sag import BOX_INERTIA, predicted_sink
 from sandbox.lab.structure import GROUND, Point, Structure
 from sandbox.scenes.criterion import Criterion
-from sandbox.scenes.parts import GRAVITY, ROUGH, add_floor, and_a_fifth
+from sandbox.scenes.parts import GRAVITY, ROUGH, add_floor, and_a_fifth, but_a_fifth, nearest
 from sandbox.scenes.registry import scene
 from sandbox.scenes.robustness.chains import fastest
 
@@ -50,6 +51,13 @@ CREEP = 0.14  # of what has fallen a millimetre [m/s]
     shows=(
         Criterion("a ball is out of the room by", lambda w: outside(w, 0.5 * ROOM, ROOM), "m", SETTLES, 0.0),
         Criterion("the deepest overlap left is", overlap, "m", SETTLES, at_most=0.05 * BALL),
+        Criterion(
+            "the middles of two balls are apart by at least",
+            lambda world: nearest(world, 1),
+            unit="m",
+            after=SETTLES,
+            at_least=1.95 * BALL,  # two radii less what may be left of the overlap: they began at 0.68 m
+        ),
         Criterion("the fastest ball still moves at", fastest, "m/s", SETTLES, at_most=CREEP),
     ),
     view=(0.0, 5.0, 12.0),
@@ -69,6 +77,13 @@ PARTS = 12.0  # [s]
 
 
 APART = Criterion("the deepest overlap left is", overlap, "m", PARTS, at_most=0.05 * SIDE)
+SPREAD = Criterion(
+    "the middles of two boxes are apart by at least",
+    lambda world: nearest(world, 1),
+    unit="m",
+    after=PARTS,
+    at_least=0.95 * SIDE,  # however they lie: each has a disc of its side across in it
+)
 GENTLY = Criterion(
     "a box lies off the middle by",
     lambda world: float(np.abs(world.positions[1:, 0]).max()),
@@ -94,7 +109,7 @@ def all_in_one_place(world: World) -> None:
 RUSHING, PULL, DUST = 90, 60.0, 0.25  # bodies; attraction of the middle [m^3/s^2]; radius of one [m]
 RUSHES = 10.0  # [s]
 NEAREST = 1.0 + DUST  # to the middle [m]
-FARTHEST = 9.0
+INNERMOST, FARTHEST = 3.0, 9.0  # rings of discs, in the beginning [m]
 
 
 @scene(
@@ -108,6 +123,21 @@ FARTHEST = 9.0
             at_most=1.1 * math.sqrt(2.0 * PULL * (1.0 / NEAREST - 1.0 / FARTHEST)),  # it has fallen so far, and a tenth
             throughout=True,
         ),
+        Criterion(
+            "the fastest has come to",
+            fastest,
+            unit="m/s",
+            after=RUSHES,
+            at_least=0.9 * math.sqrt(2.0 * PULL * (1.0 / (NEAREST + 2.0 * DUST) - 1.0 / INNERMOST)),
+            throughout=True,  # the nearest have fallen onto the middle, or onto one disc that lies there
+        ),
+        Criterion(
+            "in the end, the farthest is from the middle by",
+            lambda world: float(np.hypot(*world.positions[1:].T).max()),
+            unit="m",
+            after=RUSHES,
+            at_most=math.sqrt(1.0 + 2.0 * RUSHING * DUST**2),  # all lie around it, as loose as half air
+        ),
         Criterion("in the end, the fastest moves at", fastest, "m/s", RUSHES, at_most=0.5),
         Criterion("the deepest overlap is", overlap, "m", RUSHES, at_most=0.1 * DUST),
     ),
@@ -117,7 +147,7 @@ FARTHEST = 9.0
 def rush(world: World) -> None:
     """Ninety discs fall from all sides onto what attracts them, and come to rest around it. As Solver2D's."""
     world.create_body(Circle(1.0), kind="static", attraction=PULL, friction=ROUGH)
-    rings = np.repeat(np.linspace(3.0, FARTHEST, 5), RUSHING // 5)
+    rings = np.repeat(np.linspace(INNERMOST, FARTHEST, 5), RUSHING // 5)
     turns = math.pi * (3.0 - math.sqrt(5.0)) * np.arange(RUSHING)  # the golden angle
     places = np.column_stack([rings * np.cos(turns), rings * np.sin(turns)])
     world.create_bodies(Circle(DUST), positions=places, friction=ROUGH, rolling_resistance=0.05)
@@ -142,12 +172,22 @@ def banquet() -> Structure:
 
 @scene(
     "Robustness/Overflow of Colours",
-    shows=Criterion(
-        "a body has sunk by",
-        lambda world: float((SEATED[:, 1] - world.positions[1:, 1]).max()),
-        unit="m",
-        after=5.0,
-        at_most=and_a_fifth(lambda world, dt: predicted_sink(world, dt, banquet(), 1)),
+    shows=(
+        Criterion(
+            "a body has sunk by",
+            lambda world: float((SEATED[:, 1] - world.positions[1:, 1]).max()),
+            unit="m",
+            after=5.0,
+            at_most=and_a_fifth(lambda world, dt: predicted_sink(world, dt, banquet(), 1)),
+            at_least=but_a_fifth(lambda world, dt: predicted_sink(world, dt, banquet(), 1)),
+        ),
+        Criterion(
+            "a body is over its place by",
+            lambda world: float((world.positions[1:, 1] - SEATED[:, 1]).max()),
+            unit="m",
+            after=5.0,
+            at_most=SLOP,  # they came down from twice that
+        ),
     ),
     view=(0.0, 10.0, 62.0),
 )

@@ -84,6 +84,15 @@ def aside(world: World) -> float:
             after=HUNG,
             at_most=and_a_fifth(hung(HEAVY, TUBES)),
         ),
+        Criterion(
+            "the tube that is drawn out least lacks, of its travel,",
+            lambda world: max(
+                TRAVEL - joint.translation for joint in world.joints if isinstance(joint, PrismaticJoint)
+            ),
+            unit="m",
+            after=HUNG,
+            at_most=0.01 * TRAVEL,  # the weight of fifty hangs on each
+        ),
         Criterion("a tube is beside the axis by", aside, "m", HUNG, at_most=0.01, throughout=True),
         Criterion("the fastest tube still moves at", fastest, "m/s", HUNG, at_most=CALM),
     ),

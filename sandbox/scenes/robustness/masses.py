@@ -10,7 +10,7 @@ from engine import Box, Polygon, World
 from sandbox.lab.sag import BOX_INERTIA, predicted_sink, pyramid
 from sandbox.lab.structure import GROUND, Point, Structure
 from sandbox.scenes.criterion import Criterion
-from sandbox.scenes.parts import ROUGH, add_floor, and_a_fifth, moved
+from sandbox.scenes.parts import ROUGH, add_floor, and_a_fifth, but_a_fifth, moved
 from sandbox.scenes.registry import scene
 
 STANDS = 10.0  # [s]
@@ -25,6 +25,7 @@ def stays(places: np.ndarray, structure: Structure, body: int) -> Criterion:
         unit="m",
         after=STANDS,
         at_most=and_a_fifth(lambda world, dt: predicted_sink(world, dt, structure, body), DEEPEST),
+        at_least=but_a_fifth(lambda world, dt: predicted_sink(world, dt, structure, body), DEEPEST),
     )
 
 

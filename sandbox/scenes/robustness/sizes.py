@@ -8,7 +8,7 @@ from engine import Box, Polygon, World
 from engine.constants import SLOP
 from sandbox.lab.sag import predicted_pyramid
 from sandbox.scenes.criterion import Criterion
-from sandbox.scenes.parts import ROUGH, add_floor, and_a_fifth
+from sandbox.scenes.parts import ROUGH, add_floor, and_a_fifth, but_a_fifth
 from sandbox.scenes.registry import Build, scene
 from sandbox.scenes.robustness.chains import CALM, fastest
 
@@ -25,6 +25,7 @@ def stands(side: float) -> Criterion:
         unit="m",
         after=STANDS,
         at_most=and_a_fifth(lambda world, dt: predicted_pyramid(world, dt, BASE), 0.5 * side),
+        at_least=but_a_fifth(lambda world, dt: predicted_pyramid(world, dt, BASE), 0.5 * side),
     )
 
 
@@ -74,6 +75,13 @@ LIES = 8.0  # [s]
             after=LIES,
             at_most=SLOP,  # it may overlap, but not come through
             throughout=True,
+        ),
+        Criterion(
+            "the highest sliver's middle is over the floor by",
+            lambda world: float(world.positions[1:, 1].max()),
+            unit="m",
+            after=LIES,
+            at_most=1.0,  # all have fallen, and what leans on others does not reach over half of the longest
         ),
         Criterion("the fastest sliver still moves at", fastest, "m/s", LIES, at_most=CALM),
     ),

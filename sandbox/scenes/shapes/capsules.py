@@ -5,7 +5,7 @@ from __future__ import annotations
 from engine import Capsule, World
 from sandbox.lab.sag import predicted_column
 from sandbox.scenes.criterion import Criterion
-from sandbox.scenes.parts import ROUGH, add_floor, and_a_fifth, distance_from
+from sandbox.scenes.parts import ROUGH, add_floor, and_a_fifth, but_a_fifth, distance_from
 from sandbox.scenes.registry import scene
 
 LENGTHS = (1.0, 2.0, 3.0)  # between the centres of their ends [m]
@@ -17,14 +17,17 @@ PLACES = (-4.5, -1.3, 3.0)  # of the piles [m]
 def stands(pile: int) -> Criterion:
     """The top log sinks as its contacts give way: one at either end of the straight part."""
     shape = Capsule(LENGTHS[pile], RADIUS)
+
+    def predicted(world: World, dt: float) -> float:
+        return predicted_column(world, dt, COUNT, shape.inertia(1.0), 0.5 * LENGTHS[pile])
+
     return Criterion(
         f"the top of the logs {LENGTHS[pile]:g} m long is off its place by",
         lambda world: distance_from(world, COUNT * (pile + 1), PLACES[pile], RADIUS * (2 * COUNT - 1)),
         unit="m",
         after=10.0,
-        at_most=and_a_fifth(
-            lambda world, dt: predicted_column(world, dt, COUNT, shape.inertia(1.0), 0.5 * LENGTHS[pile])
-        ),
+        at_most=and_a_fifth(predicted),
+        at_least=but_a_fifth(predicted),
     )
 
 

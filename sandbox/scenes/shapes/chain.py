@@ -23,6 +23,8 @@ SHAPES: tuple[tuple[Shape, float], ...] = (  # and how high their middles are wh
     (Polygon(regular(5, 0.3), radius=0.15), 0.3 * float(np.cos(np.pi / 5)) + 0.15),
 )
 
+BEGIN = LEFT + 1.0 + 1.6 * np.arange(len(SHAPES))  # where they begin [m]
+
 
 def bump(world: World) -> float:
     """The fastest that anything on the chain moves up or down, or turns, 1 m from its middle [m/s]."""
@@ -34,6 +36,13 @@ def bump(world: World) -> float:
     "Shapes/Chain",
     shows=(
         Criterion("what slides over the chain's joints moves up or down at", bump, "m/s", 3.0, 0.01, throughout=True),
+        Criterion(
+            "what slides over the chain's joints has come, in parts of v t, to",
+            lambda world: float((world.positions[1 : 1 + len(SHAPES), 0] - BEGIN).min()) / (3.0 * SPEED),
+            unit="",
+            after=3.0,
+            at_least=0.999,  # nothing holds it
+        ),
         Criterion(
             "what slides over the chain's joints has lost",
             lambda world: float(np.abs(world.velocities[1 : 1 + len(SHAPES), 0] - SPEED).max()),
@@ -50,7 +59,7 @@ def chain(world: World) -> None:
     world.create_body(Chain(points), kind="static", friction=0.0)
     for height in (ABOVE, 0.0):
         for k, (shape, above) in enumerate(SHAPES):
-            place = (LEFT + 1.0 + 1.6 * k, height + above)
+            place = (float(BEGIN[k]), height + above)
             world.create_body(shape, position=place, velocity=(SPEED, 0.0), friction=0.0)
     for k in range(PIECES):
         place = (LEFT + PIECE * (k + 0.5), -0.5)

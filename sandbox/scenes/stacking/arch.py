@@ -10,7 +10,7 @@ from engine import Polygon, World
 from sandbox.lab.sag import predicted_sink
 from sandbox.lab.structure import GROUND, Point, Structure
 from sandbox.scenes.criterion import Criterion
-from sandbox.scenes.parts import ROUGH, add_floor, and_a_fifth, distance_from
+from sandbox.scenes.parts import ROUGH, add_floor, and_a_fifth, but_a_fifth, distance_from
 from sandbox.scenes.registry import scene
 
 STONES = 13
@@ -53,6 +53,7 @@ def arch_of_stones() -> Structure:
         unit="m",
         after=10.0,
         at_most=and_a_fifth(lambda world, dt: predicted_sink(world, dt, arch_of_stones(), KEYSTONE)),
+        at_least=but_a_fifth(lambda world, dt: predicted_sink(world, dt, arch_of_stones(), KEYSTONE)),
     ),
     view=(0.0, 2.8, 9.0),
 )

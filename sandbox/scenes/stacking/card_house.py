@@ -5,8 +5,10 @@ from __future__ import annotations
 import math
 
 from engine import Box, World
+from engine.constants import STATIC_STIFFENING
+from sandbox.lab.sag import contact_hertz, spring_sag
 from sandbox.scenes.criterion import Criterion
-from sandbox.scenes.parts import add_floor
+from sandbox.scenes.parts import GRAVITY, add_floor, but_a_fifth
 from sandbox.scenes.registry import scene
 
 PAIRS = 4  # of leaning cards on the ground
@@ -21,6 +23,15 @@ STOREY = 2.0 * UP + THICKNESS  # height of one [m]
 TOP = (PAIRS - 1) * STOREY + UP  # where the middles of the topmost cards are [m]
 
 
+def least_sag(world: World, dt: float) -> float:
+    """How far the highest card drops at least [m]: all the cards between it and the floor are on the two feet of each
+    pair, and a foot is a spring to the floor of at most a card's mass.
+    """
+    pairs = PAIRS * (PAIRS + 1) // 2
+    cards = 2 * pairs + (pairs - PAIRS) * (SPACING - 0.02) / LENGTH  # all of them, in those that lean
+    return spring_sag(GRAVITY * cards / (2 * PAIRS), 1.0, STATIC_STIFFENING * contact_hertz(world, dt))
+
+
 @scene(
     "Stacking/Card House",
     shows=Criterion(
@@ -29,6 +40,7 @@ TOP = (PAIRS - 1) * STOREY + UP  # where the middles of the topmost cards are [m
         unit="m",
         after=10.0,
         at_most=0.05,  # a twentieth of a card: it gives way where corners press, but no card has slipped
+        at_least=but_a_fifth(least_sag),
     ),
     view=(0.0, 1.9, 5.2),
 )

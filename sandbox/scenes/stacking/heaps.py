@@ -10,7 +10,7 @@ from engine import Box, World
 from sandbox.lab.sag import BOX_INERTIA, predicted_sink
 from sandbox.lab.structure import GROUND, Point, Structure
 from sandbox.scenes.criterion import Criterion
-from sandbox.scenes.parts import GRAVITY, ROUGH, add_floor, and_a_fifth, moved
+from sandbox.scenes.parts import GRAVITY, ROUGH, add_floor, and_a_fifth, but_a_fifth, moved, nearest
 from sandbox.scenes.registry import scene
 
 # --- mass ratio -------------------------------------------------------------------------------------------------------
@@ -38,6 +38,7 @@ def heavy_on_light() -> Structure:
         unit="m",
         after=10.0,
         at_most=and_a_fifth(lambda world, dt: predicted_sink(world, dt, heavy_on_light(), 2)),
+        at_least=but_a_fifth(lambda world, dt: predicted_sink(world, dt, heavy_on_light(), 2)),
     ),
     view=(0.0, 10.5, 25.0),
 )
@@ -53,6 +54,7 @@ def mass_ratio_400(world: World) -> None:
 
 ROWS = 4
 OVERLAP = 0.25  # of neighbours, sideways and upwards [m]
+LEFT = 0.02  # that may be left of it [m]
 
 
 def push_out_limit(world: World, dt: float) -> float:
@@ -76,7 +78,14 @@ def push_out_limit(world: World, dt: float) -> float:
             lambda world: world.diagnostics().max_penetration,
             unit="m",
             after=3.0,
-            at_most=0.02,  # of 0.25
+            at_most=LEFT,
+        ),
+        Criterion(
+            "the middles of two boxes are apart by at least",
+            lambda world: nearest(world, 1),
+            unit="m",
+            after=3.0,
+            at_least=1.0 - LEFT,  # however they lie: each has a disc of 1 m across in it. They began at 0.75 m
         ),
         Criterion(
             "in widths of the lowest row, a box lies off the middle by",

@@ -7,7 +7,7 @@ import numpy as np
 from engine import Box, World
 from sandbox.lab.sag import predicted_column, predicted_pyramid
 from sandbox.scenes.criterion import Criterion
-from sandbox.scenes.parts import ROUGH, Predict, add_floor, and_a_fifth
+from sandbox.scenes.parts import ROUGH, Predict, add_floor, and_a_fifth, but_a_fifth
 from sandbox.scenes.registry import scene
 
 STANDS = 20.0  # [s]
@@ -28,6 +28,7 @@ def stands(body: int, height: float, predicted: Predict) -> tuple[Criterion, Cri
             unit="m",
             after=STANDS,
             at_most=and_a_fifth(predicted),
+            at_least=but_a_fifth(predicted),
         ),
         Criterion(
             "the top box is off its place sideways by",
