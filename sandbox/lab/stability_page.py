@@ -25,11 +25,12 @@ def heading() -> list[str]:
     """What was done, and the picture."""
     paragraphs = (
         f"""Made by `tumble stability --peers -o docs`; not edited by hand. {len(CASES)} hard cases, each a scene with
-        criteria from physics: how far springs give way by statics and a fifth, how fast a fall can make, where a
-        ball fits into a wedge (`sandbox/lab/hard_cases/`, `sandbox/lab/sag.py`, `sandbox/lab/structure.py`). A
-        limit that follows from the solver's stiffness differs with its settings; a solver without springs may keep
-        in each contact the overlap that is left alone, 1 cm, and in each joint what the springs of the default
-        would give.""",
+        criteria from physics: how far springs give way by statics, give or take a fifth, how fast a fall can
+        make, where a ball fits into a wedge, how far what falls, slides or turns must have come
+        (`sandbox/lab/hard_cases/`, `sandbox/lab/sag.py`, `sandbox/lab/structure.py`). A limit that follows from
+        the solver's stiffness differs with its settings; a solver without springs may keep in each contact the
+        overlap that is left alone, 1 cm, and in each joint what the springs of the default would
+        give.""",
         """Each case runs with each solver's defaults, sleeping off unless it is about that. If it holds, cheaper
         settings are tried until one fails; if not, dearer ones until one holds. A cell is the cheapest that holds,
         with its CPU time of a simulated second; "not applicable" is what a solver lacks. pyb2d3 is Box2D 3.1 with

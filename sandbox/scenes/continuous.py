@@ -92,7 +92,7 @@ def at_walls(world: World) -> float:
             at_walls,
             unit="",
             after=0.45,  # the slowest needs 12 / 30 s
-            at_least=0.75,  # but for what is thrown back, by its spin or for it hits with a corner
+            at_least=0.6,  # the half that does not spin, and more; what hits with a corner is thrown back
         ),
     ),
     view=(4.0, 7.0, 18.0),

@@ -1,7 +1,7 @@
-"""A solver that is broken is caught: experiments that hold with the sound one do not with it.
+"""A solver that is broken is caught: experiments and hard cases that hold with the sound one do not with it.
 
 The soft step's program is run stage by stage, so that stages can be left out and its tables spoilt in between, all in
-compiled code.
+compiled code. Two more are wrong in whole steps: one moves nothing, one takes a part of all speeds.
 """
 
 from __future__ import annotations
@@ -13,11 +13,15 @@ from typing import Any
 import numpy as np
 import pytest
 
+from engine import World
 from engine.solvers import SOLVERS, soft_step
 from engine.solvers.soft_step.schedule import PREPARE, RELAX, RELAX_LAST
 from engine.solvers.soft_step.work import run
 from sandbox.lab import measures
 from sandbox.lab.experiments import EXPERIMENTS
+from sandbox.lab.hard_cases import CASES
+from sandbox.lab.stability import check
+from sandbox.lab.stability_ladder import Variant
 from sandbox.simulation import TIME_STEP
 from tests.sandbox.lab.experimenting import empty_world, history_of
 
@@ -136,3 +140,43 @@ def test_contacts_are_not_complementary_with_wrong_masses(monkeypatch: pytest.Mo
         found[fault] = max(worst)
     assert found["sound"] < 1e-9
     assert found["effective mass doubled"] > 0.1
+
+
+# --- whole steps, in the hard cases -----------------------------------------------------------------------------------
+
+STOLEN = 0.2  # of all speeds, in each step
+SOUND_STEP = World.step
+FROZEN_HOLDS = {"joint_grid": "a taut net: were its joints rigid, it would rest as it begins"}
+"""Hard cases that cannot tell a world in which nothing moves, and why: what is at rest all the time."""
+DAMPED_FALLS = {  # where something falls, slides, spins, swings or bounces, and does not only come to rest
+    "ball_and_chain", "bounce_house", "bouncing_column", "bridge_160", "cart", "create_and_destroy", "dt_zero",
+    "fast_spin", "friction_creep", "friction_ramp", "ghost_bumps", "gravity_flip", "pinball", "restitution",
+    "restitution_threshold", "rush", "telescope", "tunnelling_1000",
+}  # fmt: skip
+
+
+def frozen(world: World, dt: float) -> None:
+    """Time passes, and nothing moves."""
+    world._state.time += dt
+    world._state.step_count += dt > 0.0
+
+
+def damped(world: World, dt: float) -> None:
+    """A fifth of all speeds is lost."""
+    SOUND_STEP(world, dt)
+    if dt > 0.0:
+        motions = world._state.bodies.tables["motions"]
+        for name in ("vx", "vy", "w"):
+            motions[name] *= 1.0 - STOLEN
+
+
+@pytest.mark.parametrize("name", sorted(set(CASES) - {"pyramid_100"}))  # a dear one: pyramid_20 has its criteria
+def test_hard_cases_catch_a_world_that_does_not_move(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(World, "step", frozen)
+    assert check(name, Variant("soft_step")).passed is (name in FROZEN_HOLDS)
+
+
+@pytest.mark.parametrize("name", sorted(DAMPED_FALLS))
+def test_hard_cases_catch_stolen_speed(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(World, "step", damped)
+    assert check(name, Variant("soft_step")).passed is False
