@@ -31,7 +31,7 @@ def but_a_fifth(predicted: Predict, most: float = math.inf) -> Predict:
 
     most: what may be at most, whatever is predicted. Contacts without springs may stay in no overlap at all.
     """
-    return lambda world, dt: min(LEAST * predicted(world, dt), most) if is_soft(world) else -math.inf
+    return lambda world, dt: LEAST * min(predicted(world, dt), most) if is_soft(world) else -math.inf
 
 
 def distance_from(world: World, index: int, x: float, y: float) -> float:
