@@ -167,13 +167,19 @@ def orbit_speed(attraction: float, radius: float) -> float:
     return math.sqrt(attraction / radius)
 
 
-def orbit_wobble(attraction: float, radius: float, h: float) -> float:
-    """How far symplectic Euler's circular orbit leaves the circle, r w h / 2 to first order [m].
+def orbit_wobble(attraction: float, radius: float, h: float, dt: float | None = None) -> float:
+    """How far a circular orbit leaves the circle in steps of dt [s], each of substeps of h [s], to second order [m].
 
-    Its velocity lives half an h later than its position, so that the start has an inward speed of w^2 r h / 2: an
-    ellipse of eccentricity w h / 2.
+    The pull is looked up once a step, ahead (engine/effects/ahead.py): a drift of (dt - h) / 2, a kick of dt, a drift
+    of (dt + h) / 2. Such kicks can go round in a regular polygon of corners at R, with u^2 = mu / R; it is seen h / 2
+    past the middles of its sides, at r with r^2 = R^2 - u^2 (dt^2 - h^2) / 4, where u goes outwards by the angle
+    w h / 2. One let go at r without that is too slow outwards by w^2 r h / 2: an ellipse of eccentricity e = w h / 2,
+    whose farthest point is r e (1 + e) away. And it is too fast sideways by the part w^2 (dt^2 + h^2) / 16, which takes
+    it (1 - cos) r w^2 (dt^2 + h^2) / 8 farther out. Without dt it is symplectic Euler, dt = h.
     """
-    return 0.5 * orbit_speed(attraction, radius) * h
+    turn = orbit_speed(attraction, radius) / radius  # w [rad/s]
+    eccentric, fast = 0.5 * turn * h, 0.125 * turn**2 * ((dt or h) ** 2 + h * h)
+    return radius * (math.hypot(eccentric, fast) + fast + eccentric**2)
 
 
 def levitation(count: int, strength: float) -> np.ndarray:

@@ -39,15 +39,25 @@ def exact(world: World, dt: float) -> float:
     return 0.0
 
 
-def of_soft_step(predict: Predict) -> Predict:
-    """What holds for constraints that are springs, as soft_step's are; of other solvers nothing is known."""
-    return lambda world, dt: predict(world, dt) if world.settings.solver == "soft_step" else None
+def known_of(*solvers: str) -> Callable[[Predict], Predict]:
+    """What holds for these solvers; of others nothing is known."""
+
+    def restrict(predict: Predict) -> Predict:
+        return lambda world, dt: predict(world, dt) if world.settings.solver in solvers else None
+
+    return restrict
 
 
-def as_talk_and_soft_step(predict: Predict) -> Predict:
-    """What holds for the springs of soft_step, and for what sequential_impulses leave alone or push out bit by bit."""
-    known = ("soft_step", "sequential_impulses")
-    return lambda world, dt: predict(world, dt) if world.settings.solver in known else None
+of_soft_step = known_of("soft_step")
+"""What holds for constraints that are springs, as soft_step's are."""
+as_talk_and_soft_step = known_of("soft_step", "sequential_impulses")
+"""What holds for the springs of soft_step, and for what sequential_impulses push out bit by bit."""
+of_impulses = known_of("soft_step", "sequential_impulses", "ngs", "xpbd", "direct")
+"""What holds where bodies push each other by impulses that both feel. Not so in avbd, which moves body after body: its
+momentum is kept, and its friction all there, as far as the iterations have converged (docs/solvers.md).
+"""
+of_clean_impulses = known_of("soft_step", "ngs", "xpbd", "direct")
+"""The same without sequential_impulses, in which overlap that goes leaves its speed behind."""
 
 
 @dataclass(frozen=True)

@@ -155,7 +155,7 @@ PLANETS = 12
             "m",
             "how far it leaves the circle",
             lambda history, dt: float(np.abs(np.hypot(history[:, 0], history[:, 1]) - RADIUS).max()),
-            lambda world, dt: references.orbit_wobble(PULL, RADIUS, substep(world, dt)),
+            lambda world, dt: references.orbit_wobble(PULL, RADIUS, substep(world, dt), dt),
             scale=RADIUS,
             against="the circle's radius",
         ),

@@ -16,6 +16,8 @@ from sandbox.lab.experiments.experiment import (
     Watch,
     exact,
     experiment,
+    of_clean_impulses,
+    of_impulses,
 )
 
 # --- head on ----------------------------------------------------------------------------------------------------------
@@ -53,14 +55,17 @@ def collision_measures(restitution: float) -> tuple[Measure, ...]:
     where = partial(places_error, restitution=restitution)
     momentum = f"the momentum of the lighter, {DISC_MASSES[0] * SPEEDS[0]:g} kg m/s"
     return (
-        Measure("speed", "m/s", "how fast they are afterwards, at worst", speeds, exact, APPROACH, approach),
+        Measure(
+            "speed", "m/s", "how fast they are afterwards, at worst", speeds, of_clean_impulses(exact), APPROACH,
+            approach,
+        ),
         Measure(
             "place", "m", f"where they are after {MEETING:g} s, root mean square", where, scale=SPEEDS[0] * MEETING,
             against="how far the lighter would get",
         ),
         Measure(
-            "momentum", "kg m/s", "how far a pair's momentum leaves what it was, at worst", momentum_error, exact,
-            DISC_MASSES[0] * SPEEDS[0], momentum,
+            "momentum", "kg m/s", "how far a pair's momentum leaves what it was, at worst", momentum_error,
+            of_impulses(exact), DISC_MASSES[0] * SPEEDS[0], momentum,
         ),
     )  # fmt: skip
 
@@ -124,7 +129,7 @@ def shot_errors(history: History) -> np.ndarray:
             "m/s",
             "how fast disc and rod are afterwards, at worst",
             lambda history, dt: float(shot_errors(history)[:, :2].max()),
-            exact,
+            of_clean_impulses(exact),
             SHOT_AT,
             "the speed of the disc",
         ),
@@ -133,7 +138,7 @@ def shot_errors(history: History) -> np.ndarray:
             "rad/s",
             "how fast the rod turns afterwards, at worst",
             lambda history, dt: float(shot_errors(history)[:, 2].max()),
-            exact,
+            of_clean_impulses(exact),
             -AFTER[2],
             "how fast it turns",
         ),

@@ -13,9 +13,9 @@ from sandbox.lab.experiments.experiment import (
     Measure,
     Watch,
     add_floor,
-    as_talk_and_soft_step,
     experiment,
     late,
+    of_soft_step,
     places,
 )
 from sandbox.lab.sag import BOX_INERTIA, predicted_sink
@@ -56,7 +56,7 @@ def stack_structure() -> Structure:
             "m",
             "how far its top sinks",
             lambda history, dt: abs(float(history[-1, -1])),
-            as_talk_and_soft_step(lambda world, dt: predicted_sink(world, dt, stack_structure(), len(MASSES) - 1)),
+            of_soft_step(lambda world, dt: predicted_sink(world, dt, stack_structure(), len(MASSES) - 1)),
             scale=1.0,
             against="the height of one box",
         ),

@@ -55,7 +55,7 @@ ORBITS = (3.0, 4.5, 6.5, 9.0)  # radii [m]
         lambda world: float(np.abs(np.hypot(*world.positions[1:].T) - ORBITS).max()),
         unit="m",
         after=20.0,
-        at_most=and_a_fifth(lambda world, dt: orbit_wobble(PULL, min(ORBITS), dt / world.settings.substeps)),
+        at_most=and_a_fifth(lambda world, dt: orbit_wobble(PULL, min(ORBITS), dt / world.settings.substeps, dt)),
         throughout=True,
     ),
     gravity=(0.0, 0.0),

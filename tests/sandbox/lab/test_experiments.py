@@ -14,7 +14,7 @@ from sandbox.lab import experiments
 from sandbox.lab.experiments import CONVERGED, EXPERIMENTS, Measure, experiment
 from sandbox.lab.experiments.beams import MOMENTS, SHEARS
 from sandbox.lab.experiments.bouncing import DROPS, RESTITUTION, apex_error, vertex
-from sandbox.lab.experiments.experiment import G
+from sandbox.lab.experiments.experiment import ROUNDING, G
 from sandbox.lab.experiments.flight import (
     DRIFT,
     FLIGHT,
@@ -51,6 +51,7 @@ from sandbox.lab.experiments.swinging import (
     swing_energy_error,
     zero_crossings,
 )
+from sandbox.lab.sag import MARGIN
 from tests.sandbox.lab.experimenting import able, error_of, errors_of, predicted, scale_of
 
 DT = 1 / 60
@@ -293,11 +294,80 @@ EXACT = [
 ]
 
 
-@pytest.mark.parametrize("substeps", [4, 8])
+@pytest.mark.parametrize("substeps", [1, 4, 16])
 @pytest.mark.parametrize(("name", "what", "settings"), CLOSED_FORMS)
 def test_soft_step_errs_as_predicted(name: str, what: str, settings: dict, substeps: int) -> None:
+    if (name, substeps) == ("wedge", 1):
+        assert predicted(name, what, substeps=1) is None  # the block sinks into its contacts by a fifth of what it lags
+        return
+    rel = 0.06
+    if (name, substeps, settings) == ("cantilever", 1, ITERATED):
+        rel = 0.15  # its joints at 7.5 Hz give way by a ninth of its length: further than the small angles of statics
     settings = {"substeps": substeps, **settings}
-    assert error_of(name, what, **settings) == pytest.approx(predicted(name, what, **settings), rel=0.06, abs=2e-5)
+    assert error_of(name, what, **settings) == pytest.approx(predicted(name, what, **settings), rel=rel)
+
+
+SWEPT: list[tuple[str, int, dict[str, Any]]] = [
+    *((solver, 1, {}) for solver in SOLVERS),
+    ("soft_step", 1, {"substeps": 1}),
+    ("soft_step", 1, {"substeps": 2}),
+    ("soft_step", 1, {"substeps": 32}),
+    ("soft_step", 1, {"substeps": 32, "stiffness": "fixed"}),
+    ("sequential_impulses", 8, {}),
+    ("sequential_impulses", 1, {"iterations": 1}),
+    ("ngs", 8, {}),
+    ("direct", 8, {}),
+    ("xpbd", 1, {"substeps": 1}),
+]
+
+
+@pytest.mark.parametrize(("solver", "steps", "settings"), SWEPT)
+@pytest.mark.parametrize("name", EXACTLY)
+def test_whatever_is_predicted_of_a_solver_holds(name: str, solver: str, steps: int, settings: dict) -> None:
+    # within a fifth, as measures are limited, in both directions: what is shown as predicted is not just a bound
+    if not able(EXPERIMENTS[name], solver):
+        return
+    said = {what.what: predicted(name, what.what, solver, steps, **settings) for what in EXPERIMENTS[name].measures}
+    if all(each is None for each in said.values()):
+        return
+    try:
+        found = errors_of(name, solver, steps, tuple(sorted(settings.items())))
+    except StepError as error:
+        assert solver == "direct"
+        assert "takes at most" in str(error)
+        return
+    for what, expected in said.items():
+        if expected is not None:
+            assert found[what] == pytest.approx(
+                expected, rel=MARGIN - 1.0, abs=ROUNDING["double"] * scale_of(name, what)
+            )
+
+
+def test_who_is_told_what() -> None:
+    clean, pushing = {"soft_step", "ngs", "xpbd", "direct"}, set(SOLVERS) - {"avbd"}
+    for solver in SOLVERS:
+        assert predicted("ballistic", "height", solver) is not None
+        assert (predicted("collision_inelastic", "speed", solver) == 0.0) == (solver in clean)
+        assert (predicted("off_centre", "spin", solver) == 0.0) == (solver in clean)
+        assert (predicted("collision_inelastic", "momentum", solver) == 0.0) == (solver in pushing)
+        assert (predicted("sliding", "distance", solver) is not None) == (solver in pushing)
+        assert (predicted("incline", "acceleration", solver) is not None) == (solver in pushing)
+        assert (predicted("wedge", "block", solver) is not None) == (solver in pushing)
+    energies = [predicted("pendulum", "energy", substeps=substeps) for substeps in (1, 2, 4)]
+    assert [energy is None for energy in energies] == [True, True, False]
+    energies = [predicted("pendulum", "energy", "sequential_impulses", steps) for steps in (1, 4, 8)]
+    assert [energy is None for energy in energies] == [True, True, False]
+
+
+@pytest.mark.parametrize(
+    ("name", "what"),
+    [("collision_inelastic", "momentum"), ("incline", "acceleration"), ("incline", "slide"), ("sliding", "distance")],
+)
+def test_avbd_does_as_others_when_it_has_converged(name: str, what: str) -> None:
+    iterations = 1000 if what == "momentum" else 50
+    expected = predicted(name, what, "sequential_impulses")
+    error = error_of(name, what, "avbd", iterations=iterations)
+    assert error == pytest.approx(expected, rel=1e-3, abs=1e-9 * scale_of(name, what))
 
 
 @pytest.mark.parametrize(("name", "what"), EXACT)
@@ -354,8 +424,9 @@ def test_where_contacts_are_fresh_discs_roll_as_predicted(name: str, what: str) 
 
 
 def test_nothing_is_said_of_what_turns_within_a_step() -> None:
-    assert predicted("rolling", "distance", substeps=4) is None
-    assert predicted("rolling", "distance", substeps=1) is not None
+    for solver in SOLVERS:
+        told = predicted("rolling", "distance", solver) is not None
+        assert told == (solver == "sequential_impulses")
     for name, what in (("stack", "sag"), ("pendulum", "joint gap")):
         assert predicted(name, what, substeps=4) is not None
 
@@ -410,6 +481,75 @@ def test_error_of_sequential_impulses_falls_with_the_time_step(name: str, what: 
     assert math.log2(coarse / fine) == pytest.approx(order, abs=0.15 * order)
 
 
+@pytest.mark.parametrize("fewest", [8, 16])
+def test_period_of_a_pendulum_is_of_second_order(fewest: int) -> None:
+    # by substeps, and by shorter steps, to the same: with fewer its error crosses 0
+    coarse, fine = (
+        error_of("pendulum", "period", substeps=substeps, **ITERATED) for substeps in (2 * fewest, 4 * fewest)
+    )
+    assert math.log2(coarse / fine) == pytest.approx(2, abs=0.2)
+    by_steps = error_of("pendulum", "period", steps=fewest, substeps=4, **ITERATED)
+    assert by_steps == pytest.approx(fine, rel=0.02)
+
+
+ANEW: dict[str, Any] = {"recycling": False}  # contacts found in every step
+BY_STEPS = [  # in three times, each of half the step of the one before; substeps
+    ("rolling", "distance", 1, 1, 4),
+    ("rolling", "distance", 1, 4, 4),
+    ("rolling", "spin", 2, 1, 2),
+    ("slipping", "distance", 1, 1, 4),
+    ("slipping", "distance", 1, 4, 4),
+    ("slipping", "spin", 1, 1, 4),
+    ("skid", "distance", 1, 1, 8),
+    ("skid", "distance", 1, 4, 8),
+    ("skid", "speed", 2, 1, 4),
+    ("skid", "speed", 2, 4, 4),
+    ("rolling_resistance", "distance", 1, 1, 8),
+    ("rolling_resistance", "distance", 1, 4, 8),
+    ("bounce", "apex", 1, 1, 1),
+    ("bounce", "apex", 1, 1, 16),
+    ("bounce", "apex", 1, 4, 16),
+    ("bounce_elastic", "apex", 1, 1, 16),
+    ("bounce_elastic", "apex", 1, 4, 16),
+    ("collision", "place", 1, 1, 16),
+    ("collision", "place", 1, 4, 8),
+]
+
+
+@pytest.mark.parametrize(("name", "what", "order", "substeps", "fewest"), BY_STEPS)
+def test_what_depends_on_when_contacts_are_found_converges_with_the_time_step(
+    name: str, what: str, order: int, substeps: int, fewest: int
+) -> None:
+    steps = (fewest, 2 * fewest, 4 * fewest)
+    coarse, middle, fine = (error_of(name, what, steps=count, substeps=substeps, **ANEW) for count in steps)
+    for before, after in ((coarse, middle), (middle, fine)):
+        assert math.log2(before / after) == pytest.approx(order, abs=0.2 * order)
+
+
+@pytest.mark.parametrize(
+    ("name", "what"), [("rolling", "spin"), ("slipping", "spin"), ("skid", "speed"), ("collision", "place")]
+)
+def test_what_a_step_does_not_see_is_a_floor_that_substeps_do_not_lower(name: str, what: str) -> None:
+    some, many = (error_of(name, what, substeps=substeps) for substeps in (16, 32))
+    assert many == pytest.approx(some, rel=0.05)
+    assert error_of(name, what, steps=4, substeps=4) < 0.5 * many  # a step of a quarter does, at no more substeps
+
+
+@pytest.mark.parametrize("name", ["bounce", "bounce_elastic"])
+def test_when_balls_hit_is_a_floor_that_substeps_do_not_lower(name: str) -> None:
+    some, many = (error_of(name, "apex", substeps=substeps) for substeps in (32, 128))
+    assert 0.7 < many / some < 1.3
+    assert error_of(name, "apex", steps=32, substeps=4) < 0.5 * many
+
+
+@pytest.mark.parametrize(("name", "what"), [("slipping", "spin"), ("skid", "speed")])
+def test_contacts_that_are_kept_are_a_floor_that_time_steps_do_not_lower(name: str, what: str) -> None:
+    # a disc turns until it has moved by recycling_distance before its contact is found anew, however short the steps
+    errors = [error_of(name, what, steps=steps, substeps=1) for steps in (4, 8, 16)]
+    assert errors == pytest.approx([errors[0]] * 3, rel=0.1)
+    assert error_of(name, what, steps=16, substeps=1, **ANEW) < 0.5 * errors[-1]
+
+
 def test_more_substeps_make_the_period_right() -> None:
     errors = [error_of("pendulum", "period", substeps=substeps) for substeps in (1, 4, 16)]
     assert errors[0] > 10 * errors[1] > 20 * errors[2]
@@ -460,11 +600,21 @@ def test_discs_end_up_rolling() -> None:
     assert error_of("skid", "speed", "sequential_impulses") < 1e-12
 
 
+MOST: dict[tuple, float] = {
+    ("soft_step",): 0.5,  # of the scale; of other solvers all of it
+    ("sequential_impulses", "hanging_chain", "tension"): 2.0,  # 10 iterations let it whip itself apart: see below
+}
+
+
 @pytest.mark.parametrize("solver", SOLVERS)
 @pytest.mark.parametrize("name", EXACTLY)
 def test_every_experiment_runs_with_every_solver_that_can(name: str, solver: str) -> None:
     if able(EXPERIMENTS[name], solver):
-        errors = errors_of(name, solver, 1, ())
-        assert not any(math.isnan(error) for error in errors.values())
-        if solver == "soft_step":
-            assert all(errors[what] < 0.5 * scale_of(name, what) for what in errors)
+        for what, error in errors_of(name, solver, 1, ()).items():
+            assert error < MOST.get((solver, name, what), MOST.get((solver,), 1.0) * scale_of(name, what))
+            if solver == "sequential_impulses" and what != "tension":
+                assert error < 1.0  # whatever its unit
+
+
+def test_a_chain_that_whips_itself_apart_hangs_with_more_iterations() -> None:
+    assert error_of("hanging_chain", "tension", "sequential_impulses", iterations=20) < 0.01
