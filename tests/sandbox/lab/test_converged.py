@@ -233,3 +233,22 @@ def test_distance_and_divergence(monkeypatch: pytest.MonkeyPatch) -> None:
     history[10, 0] = math.nan
     assert distance.error(history, DT) == math.inf
     assert diverged.error(history, DT) == pytest.approx(1.0 - 11 / 50)
+
+
+def test_a_heap_is_compared_for_no_longer_than_is_said() -> None:
+    heap = CONVERGED["heap"]
+    reference = reference_of("heap", hard.fill_heap, heap.seconds)
+    assert reference.known(hard.CERTAIN) * DT == pytest.approx(0.45, abs=0.05)
+    distance, diverged, *_ = heap.measures
+    assert distance.says.endswith("at worst, in the first 0.45 s of 3: of what comes after nothing is known")
+    assert diverged.says.startswith("the part of the first 0.45 s of 3, after which nothing is known, after a body")
+    assert diverged.against == "about 0.45 s, while the reference is certain"
+
+
+@pytest.mark.parametrize("name", ["arch", "card_house", "mass_ratio"])
+def test_what_stands_is_compared_all_of_the_time(name: str) -> None:
+    one = CONVERGED[name]
+    reference = one.prepare() if one.prepare else None
+    assert isinstance(reference, Reference)
+    assert reference.known(hard.CERTAIN) == round(one.seconds / DT)
+    assert one.measures[1].against == "all of the time"
