@@ -128,9 +128,9 @@ def test_every_action_has_its_reaction(solver: str) -> None:
     drift = {"soft_step": 0.02, "sequential_impulses": 1e-12}.get(solver, 0.05)
     rng = np.random.default_rng(7)
     world = World(gravity=(0, 0), precision="double", solver=solver)
-    steps = 180
-    if solver == "avbd":  # body after body: kept as far as it has converged, tests/engine/solvers/test_positions.py
-        world.iterations, steps = 1000, 60
+    rounding = 1e-12
+    if solver == "avbd":  # body after body: kept as far as it has converged; with 10 iterations it is off by 23 kg m/s
+        world.iterations, rounding = 1000, 1e-9
     for k in range(24):
         shape = Box(*rng.uniform(0.5, 1.5, 2)) if k % 3 else Circle(rng.uniform(0.3, 0.8))
         place = np.array([k % 5 - 2, k // 5 - 2]) * 1.6
@@ -144,11 +144,11 @@ def test_every_action_has_its_reaction(solver: str) -> None:
         )
     before = world.diagnostics()
     most = 0
-    for _ in range(steps):
+    for _ in range(180):
         world.step(DT)
         after = world.diagnostics()
         most = max(most, after.contact_count)
-        assert tuple(after.momentum) == pytest.approx(tuple(before.momentum), abs=1e-12)
+        assert tuple(after.momentum) == pytest.approx(tuple(before.momentum), abs=rounding)
         assert after.angular_momentum == pytest.approx(before.angular_momentum, rel=drift)
     assert most > 20
     assert after.kinetic_energy < before.kinetic_energy

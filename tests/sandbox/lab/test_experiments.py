@@ -361,10 +361,16 @@ def test_who_is_told_what() -> None:
 
 @pytest.mark.parametrize(
     ("name", "what"),
-    [("collision_inelastic", "momentum"), ("incline", "acceleration"), ("incline", "slide"), ("sliding", "distance")],
+    [
+        ("collision_inelastic", "momentum"),
+        ("incline", "acceleration"),
+        ("incline", "slide"),
+        ("sliding", "distance"),
+        ("atwood", "distance"),
+    ],
 )
 def test_avbd_does_as_others_when_it_has_converged(name: str, what: str) -> None:
-    iterations = 1000 if what == "momentum" else 50
+    iterations = {"momentum": 1000, "distance": 300}.get(what, 50)
     expected = predicted(name, what, "sequential_impulses")
     error = error_of(name, what, "avbd", iterations=iterations)
     assert error == pytest.approx(expected, rel=1e-3, abs=1e-9 * scale_of(name, what))
