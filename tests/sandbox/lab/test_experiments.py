@@ -370,7 +370,7 @@ def test_who_is_told_what() -> None:
     ],
 )
 def test_avbd_does_as_others_when_it_has_converged(name: str, what: str) -> None:
-    iterations = {"momentum": 1000, "distance": 300}.get(what, 50)
+    iterations = {"collision_inelastic": 1000, "atwood": 200}.get(name, 50)
     expected = predicted(name, what, "sequential_impulses")
     error = error_of(name, what, "avbd", iterations=iterations)
     assert error == pytest.approx(expected, rel=1e-3, abs=1e-9 * scale_of(name, what))
