@@ -5,6 +5,7 @@ At most one task a core is under way, so that timed runs do not disturb each oth
 
 from __future__ import annotations
 
+import asyncio
 import logging
 import multiprocessing
 import os
@@ -13,7 +14,7 @@ from collections.abc import Callable
 from concurrent.futures import Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor
 from typing import Any, Protocol
 
-CONNECTING = 10  # s to wait for a cluster
+CONNECTING = 5  # s to wait for a cluster
 
 
 class WorkersError(Exception):
@@ -33,6 +34,33 @@ class Workers(Protocol):
 
     def close(self) -> None:
         """At once, whatever is under way."""
+
+
+def silence(library: str) -> None:
+    """Nothing of what a library logs, in any of its parts: what the user must know is told in our words."""
+    for name in (library, *(name for name in logging.root.manager.loggerDict if name.startswith(f"{library}."))):
+        logging.getLogger(name).setLevel(logging.CRITICAL + 1)
+
+
+async def _ask_scheduler(address: str) -> None:
+    """OSError or ValueError unless one answers.
+
+    Before a client is made: one that found nothing waits at its end, and complains; one that something else keeps
+    waiting never ends.
+    """
+    from distributed.core import connect
+
+    async def ask() -> object:
+        line = await connect(address, timeout=CONNECTING)
+        try:
+            await line.write({"op": "identity", "reply": True})
+            return await line.read()
+        finally:
+            line.abort()
+
+    about = await asyncio.wait_for(ask(), CONNECTING)
+    if not isinstance(about, dict) or about.get("type") != "Scheduler":
+        raise ValueError("what answers is something else")
 
 
 def cores() -> int:
@@ -105,11 +133,12 @@ class Cluster:
             import distributed
         except ImportError:
             raise WorkersError("distributed is not installed: pip install 'tumble[dask]'") from None
-        logging.getLogger("distributed").setLevel(logging.CRITICAL)
+        silence("distributed")
         try:
+            asyncio.run(_ask_scheduler(address))
             self._client = distributed.Client(address, timeout=CONNECTING, set_as_default=False)
         except (OSError, ValueError, TypeError, ImportError) as error:
-            says = str(error).partition("\n")[0][:200]
+            says = str(error).partition("\n")[0][:200] or f"it kept silent for {CONNECTING} s"
             raise WorkersError(f"no Dask scheduler answers there: {says}") from None
         self.slots = len(self._client.scheduler_info(n_workers=-1)["workers"])
         if not self.slots:

@@ -6,6 +6,9 @@ import json
 import math
 import os
 import signal
+import socket
+import subprocess
+import sys
 import time
 from collections.abc import Iterator
 from concurrent.futures.process import BrokenProcessPool
@@ -413,6 +416,21 @@ def test_a_wrong_budget_is_one_line(tumble: Tumble, budget: str) -> None:
 def test_a_cluster_that_is_not_there_is_one_line(tumble: Tumble, address: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("sandbox.lab.accuracy.workers.CONNECTING", 0.5)
     assert f"--dask {address}: no Dask scheduler answers there" in one_line(tumble("accuracy", "--dask", address))
+
+
+@pytest.mark.parametrize("address", ["nonsense", "tcp://127.0.0.1:1"])
+def test_a_cluster_that_is_not_there_leaves_nothing_to_complain_later(address: str) -> None:
+    """As a process: what is collected at its end must neither wait nor tell of itself."""
+    command = [sys.executable, "-m", "sandbox.cli", "accuracy", "ballistic", "--dask", address]
+    ended = subprocess.run(command, capture_output=True, text=True, cwd=Path(__file__).parents[3], check=False)
+    assert "no Dask scheduler answers there" in one_line((ended.returncode, ended.stdout, ended.stderr))
+
+
+def test_what_answers_but_is_no_scheduler_is_one_line(tumble: Tumble, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("sandbox.lab.accuracy.workers.CONNECTING", 0.5)
+    with socket.create_server(("127.0.0.1", 0)) as mute:
+        address = f"tcp://127.0.0.1:{mute.getsockname()[1]}"
+        assert "it kept silent for 0.5 s" in one_line(tumble("accuracy", "--dask", address))
 
 
 @pytest.mark.usefixtures("tiny")
