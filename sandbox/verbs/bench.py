@@ -24,7 +24,7 @@ from sandbox.lab.bench_scenes import FEWEST_STEPS, FOLDER, MOST_STEPS, default_s
 from sandbox.lab.page import PageError, check_page, write_section
 from sandbox.lab.peers import INSTALLABLE, Box2DLite, Peer, PeerError
 from sandbox.scenes import Scene
-from sandbox.verbs.common import BadInput, add_json, made, report, say, scene_named, whole_number
+from sandbox.verbs.common import BadInput, add_json, check_json, made, report, say, scene_named, whole_number
 
 NAME = "bench"
 LONGEST = 3600.0  # to settle [s]
@@ -96,8 +96,7 @@ def _plan(scene: Scene, options: argparse.Namespace) -> Plan:
 
 def _check_files(options: argparse.Namespace) -> None:
     """Before minutes of measuring are lost."""
-    if options.json not in (None, "-") and not Path(options.json).parent.is_dir():
-        raise BadInput(f"--json {options.json}: its folder does not exist")
+    check_json(options)
     if options.markdown is not None:
         try:
             check_page(options.markdown, NAME)

@@ -14,6 +14,7 @@ from engine import World, validate
 from engine.settings import MOST, describe
 from engine.threads import MOST as MOST_THREADS
 from sandbox.scenes import Scene, UnknownScene, find_scene
+from sandbox.verbs.writable import hindrance
 
 if TYPE_CHECKING:
     from recordings import Recording
@@ -125,6 +126,12 @@ def add_json(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--json", metavar="FILE", help="write the report as JSON; - is standard output")
 
 
+def check_json(options: argparse.Namespace) -> None:
+    """BadInput if --json cannot be written: before minutes of measuring are lost."""
+    if options.json not in (None, "-") and (why := hindrance(Path(options.json))):
+        raise BadInput(f"--json {options.json}: {why}")
+
+
 def report(options: argparse.Namespace, data: Any, text: str) -> None:
     """Prints the text, and writes the data where --json says; on standard output the JSON stands alone."""
     if options.json == "-":
@@ -132,7 +139,7 @@ def report(options: argparse.Namespace, data: Any, text: str) -> None:
         return
     if text:
         print(text)
-    if options.json:
+    if options.json is not None:
         try:
             Path(options.json).write_text(json.dumps(data, indent=2) + "\n")
         except OSError as error:

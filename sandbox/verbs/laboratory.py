@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 
 from sandbox.verbs.common import BadInput
+from sandbox.verbs.writable import folder_hindrance, hindrance
 
 
 def add_folder(parser: argparse.ArgumentParser, does: str) -> None:
@@ -27,8 +28,19 @@ def chosen_names(what: str, given: Iterable[str], known: Iterable[str]) -> list[
     return chosen or names
 
 
+def check_folder(folder: Path | None, files: Iterable[str]) -> None:
+    """BadInput if these files cannot be written into the folder, which need not be there yet. Makes nothing."""
+    if folder is None:
+        return
+    if why := folder_hindrance(folder):
+        raise BadInput(f"-o {folder}: cannot be made or written into: {why}")
+    for file in files:
+        if (folder / file).parent.is_dir() and (why := hindrance(folder / file)):
+            raise BadInput(f"-o {folder}: {file} cannot be written: {why}")
+
+
 def prepare_folder(folder: Path | None) -> None:
-    """Makes the folder, before minutes of measuring are lost for want of it."""
+    """Makes the folder."""
     if folder is not None:
         try:
             folder.mkdir(parents=True, exist_ok=True)

@@ -174,6 +174,10 @@ def test_a_folder_that_is_not_there_is_one_line(
     assert refused(capsys, "Single Box", option, str(file)) == f"tumble: {option} {file}: its folder does not exist"
 
 
+def test_json_that_is_a_folder_is_refused_at_once(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert refused(capsys, "Single Box", "--json", str(tmp_path)) == f"tumble: --json {tmp_path}: it is a folder"
+
+
 def test_without_a_peer_there_is_one_line(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     monkeypatch.setitem(sys.modules, "pyb2d3", None)
     line = refused(capsys, "Single Box", "--steps", "1", "--peers")
