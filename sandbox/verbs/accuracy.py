@@ -23,14 +23,15 @@ from sandbox.lab.experiments import EXPERIMENTS
 from sandbox.lab.page import PageError, check_page, write_section
 from sandbox.lab.peers import KNOBS, PeerError
 from sandbox.signals import interruptible
-from sandbox.verbs.common import BadInput, add_json, report, say
-from sandbox.verbs.laboratory import add_folder, chosen_names, prepare_folder, write_file
+from sandbox.verbs.common import BadInput, add_json, check_json, report, say
+from sandbox.verbs.laboratory import add_folder, check_folder, chosen_names, prepare_folder, write_file
 
 NAME = "accuracy"
 PAGE = "accuracy.md"
 HTML = "accuracy.html"
 SECTION = "tumble accuracy"  # of the page
 LONGEST = 1e6  # --budget [s]
+LARGER = "give it a larger --budget"
 TELLING = 20.0  # s between two lines on how far it is, where nobody watches a terminal
 
 
@@ -67,25 +68,40 @@ def run(options: argparse.Namespace) -> int:
     experiments = [EXPERIMENTS[name] for name in chosen_names("scene", options.scene, EXPERIMENTS)]
     solvers = chosen_names("solver", options.solvers, SOLVERS)
     series = all_series(solvers, _peers() if options.peers else ())
-    if options.output is not None:
-        _prepare(options.output)
+    _check_files(options, [experiment.name for experiment in experiments])
     with interruptible(), telling() as tell:
-        outcome = sweep(experiments, series, workers_for(options), seconds=options.budget, progress=tell)
+        workers = workers_for(options)
+        if options.output is not None:
+            prepare_folder(options.output / PICTURES)
+        outcome = sweep(experiments, series, workers, seconds=options.budget, progress=tell)
     say(summary(outcome))
     if not outcome.rows:
-        raise BadInput(f"nothing was measured: {_why_nothing(outcome)}")
+        raise BadInput(f"nothing was measured: {_why_nothing(outcome, options.budget)}")
     if options.output is not None:
         _write(options.output, outcome)
     report(options, [row.to_dict() for row in outcome.rows], as_text(outcome))
     return 0
 
 
-def _why_nothing(outcome: Outcome) -> str:
+def _why_nothing(outcome: Outcome, budget: float) -> str:
     if outcome.failures:
         return outcome.failures[0]
     if outcome.left:
-        return "there was no time for a single run: give it more (--budget)"
+        return _where_time_went(outcome, budget)
     return next(iter(outcome.refused.values()), "there is nothing to measure")
+
+
+def _where_time_went(outcome: Outcome, budget: float) -> str:
+    """What took all of the budget, and what to do."""
+    if outcome.compiled or "" in outcome.unprepared:
+        count = f" {outcome.compiled} kernels" if outcome.compiled else ""
+        return (
+            f"all of the {budget:g} s went into compiling{count}; compiled code is kept, so run it once more,"
+            " or give it a larger --budget"
+        )
+    if outcome.unprepared:
+        return f"making what {outcome.unprepared[0]} is compared with took all of the {budget:g} s; {LARGER}"
+    return f"no run ended within {budget:g} s; {LARGER} (once more may do, if it was compiling: compiled code is kept)"
 
 
 def workers_for(options: argparse.Namespace) -> Workers:
@@ -105,12 +121,18 @@ def _peers() -> list[str]:
         raise BadInput(str(error)) from None
 
 
-def _prepare(folder: Path) -> None:
-    """Before minutes of measuring are lost for want of it."""
-    prepare_folder(folder)
-    prepare_folder(folder / PICTURES)
+def _check_files(options: argparse.Namespace, scenes: list[str]) -> None:
+    """Before minutes of measuring are lost."""
+    check_json(options)
+    folder: Path | None = options.output
+    pictures = [f"{PICTURES}/{picture_name(scene)}.{kind}" for scene in scenes for kind in ("svg", "png")]
+    check_folder(folder, [PAGE, HTML, *pictures])
+    if folder is None:
+        return
+    check_folder(folder / PICTURES, ())
     try:
-        check_page(folder / PAGE, SECTION)
+        if folder.is_dir():
+            check_page(folder / PAGE, SECTION)
     except PageError as error:
         raise BadInput(f"-o {error}") from None
 

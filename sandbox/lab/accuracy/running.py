@@ -30,6 +30,7 @@ class Outcome:
     left: Counter[tuple[str, int]] = field(default_factory=Counter)  # (scene, level): settings without time
     failures: list[str] = field(default_factory=list)  # what went wrong, a line each
     compiled: int = 0  # kernels
+    unprepared: list[str] = field(default_factory=list)  # scenes; "" is compiling: what there was no time to make first
     seconds: float = 0.0
 
 
@@ -73,6 +74,8 @@ class Run:
                 break  # `sweep` ends what is still under way
         for job in (*self._waiting, *self._flying.values()):
             self._leave(job.task)
+            if job.task is None:
+                self.outcome.unprepared.append(job.prepares)
 
     def _submit(self) -> bool:
         """Hands out jobs until every worker has one; whether any is under way."""

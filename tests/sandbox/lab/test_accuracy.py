@@ -10,6 +10,7 @@ import socket
 import subprocess
 import sys
 import time
+from collections import Counter
 from collections.abc import Iterator
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import replace
@@ -437,9 +438,33 @@ def test_what_answers_but_is_no_scheduler_is_one_line(tumble: Tumble, monkeypatc
 def test_no_time_for_a_single_run_is_one_line(tumble: Tumble) -> None:
     code, out, err = tumble("accuracy", "ballistic", "--budget", "1e-6")
     assert (code, out) == (2, "")
-    assert err.splitlines()[-1].endswith(
-        "nothing was measured: there was no time for a single run: give it more (--budget)"
-    )
+    assert "nothing was measured: no run ended within 1e-06 s; give it a larger --budget" in err.splitlines()[-1]
+
+
+@pytest.mark.usefixtures("tiny")
+@pytest.mark.parametrize(
+    ("outcome", "says"),
+    [
+        ({"compiled": 7}, "all of the 9 s went into compiling 7 kernels; compiled code is kept, so run it once more"),
+        ({"unprepared": [""]}, "all of the 9 s went into compiling; compiled code is kept, so run it once more"),
+        ({"unprepared": ["sliding"]}, "making what sliding is compared with took all of the 9 s; give it a larger"),
+    ],
+)
+def test_where_the_time_went_is_told(
+    tumble: Tumble, monkeypatch: pytest.MonkeyPatch, outcome: dict[str, Any], says: str
+) -> None:
+    found = Outcome(left=Counter({("sliding", 0): 3}), **outcome)
+    monkeypatch.setattr("sandbox.verbs.accuracy.sweep", lambda *_, **__: found)
+    code, _, err = tumble("accuracy", "sliding", "--budget", "9")
+    assert code == 2
+    assert f"nothing was measured: {says}" in err.splitlines()[-1]
+
+
+def test_what_there_was_no_time_to_prepare_is_known(monkeypatch: pytest.MonkeyPatch) -> None:
+    compared = replace(SLIDING, prepare=lambda: None)
+    monkeypatch.setitem(EXPERIMENTS, "sliding", compared)
+    outcome = sweep([compared, BOUNCE], TINY[:1], Threads(), seconds=1e-9, repeats=1)
+    assert outcome.unprepared == ["sliding", ""]
 
 
 @pytest.mark.usefixtures("tiny")
@@ -457,5 +482,15 @@ def test_folder_that_cannot_be_used_is_one_line_and_measures_nothing(
     (tmp_path / "file").write_text("")
     monkeypatch.setattr("sandbox.verbs.accuracy.sweep", None)
     assert "cannot be made" in one_line(tumble("accuracy", "-o", tmp_path / "file" / "folder"))
+    new, none = tmp_path / "new", "tcp://127.0.0.1:1"
+    assert f"--json {tmp_path}: it is a folder" in one_line(tumble("accuracy", "-o", new, "--json", tmp_path))
+    assert "its folder does not exist" in one_line(tumble("accuracy", "-o", new, "--json", new / "rows.json"))
+    monkeypatch.setattr("sandbox.lab.accuracy.workers.CONNECTING", 0.5)
+    rows = tmp_path / "rows.json"
+    assert "no Dask scheduler" in one_line(tumble("accuracy", "-o", new, "--json", rows, "--dask", none))
+    (tmp_path / "accuracy.html").mkdir()
+    assert "accuracy.html cannot be written: it is a folder" in one_line(tumble("accuracy", "-o", tmp_path))
+    assert sorted(file.name for file in tmp_path.iterdir()) == ["accuracy.html", "file"]
+    (tmp_path / "accuracy.html").rmdir()
     (tmp_path / "accuracy.md").write_text("a page without the marks")
     assert "must have the lines" in one_line(tumble("accuracy", "-o", tmp_path))
