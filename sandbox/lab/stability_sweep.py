@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import multiprocessing
-import os
 import time
 from collections.abc import Callable, Sequence
-from concurrent.futures import Future, ProcessPoolExecutor, wait
+from concurrent.futures import BrokenExecutor, Future, wait
 
+from sandbox.lab.accuracy.workers import Processes, WorkersError, cores
 from sandbox.lab.stability import Row, try_cell
 
 Cell = tuple[str, str]  # case, solver
@@ -18,14 +17,16 @@ MOST_WORKERS = 4
 
 def workers() -> int:
     """As many as there are cores, up to a few."""
-    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-    return min(cores, MOST_WORKERS)
+    return min(cores(), MOST_WORKERS)
 
 
 def sweep(
     cells: Sequence[Cell], budget: float, progress: Progress, *, defaults_only: bool = False, jobs: int = 1
 ) -> dict[Cell, list[Row]]:
-    """The rows of each cell; none where the time [s] was not enough for its first. jobs: processes; 1: this one."""
+    """The rows of each cell; none where the time [s] was not enough for its first. jobs: processes; 1: this one.
+
+    WorkersError if one of the processes dies.
+    """
     deadline = time.time() + budget
     found: dict[Cell, list[Row]] = {}
     if jobs == 1:
@@ -33,8 +34,8 @@ def sweep(
             found[cell] = try_cell(*cell, defaults_only, deadline) if time.time() < deadline else []
             progress()
         return found
-    context = multiprocessing.get_context("spawn")  # a fork would copy locks that the engine's threads hold
-    with ProcessPoolExecutor(min(jobs, len(cells)), context) as pool:
+    pool = Processes(min(jobs, len(cells)))
+    try:
         futures = {pool.submit(try_cell, *cell, defaults_only, deadline): cell for cell in cells}
         left: set[Future] = set(futures)
         while left:
@@ -46,4 +47,8 @@ def sweep(
                     future.cancel()
         for future, cell in futures.items():
             found[cell] = [] if future.cancelled() else future.result()
+    except BrokenExecutor:
+        raise WorkersError("a process that tried cases was ended from outside: for want of memory?") from None
+    finally:
+        pool.close()  # at once, whatever is under way: Ctrl-C waits for no case
     return {cell: found[cell] for cell in cells}

@@ -4,27 +4,32 @@ from __future__ import annotations
 
 import argparse
 import json
+from itertools import product
 
 from rich.console import Console
 from rich.progress import Progress
 
 from engine import SOLVERS
 from sandbox.compiling import compile_all
+from sandbox.lab.accuracy.workers import WorkersError
 from sandbox.lab.hard_cases import CASES
 from sandbox.lab.stability import Row
-from sandbox.lab.stability_baseline import steps_back
+from sandbox.lab.stability_baseline import not_shown, steps_back
 from sandbox.lab.stability_ladder import PEERS
 from sandbox.lab.stability_page import as_markdown
 from sandbox.lab.stability_picture import draw
 from sandbox.lab.stability_report import as_text
 from sandbox.lab.stability_sweep import sweep, workers
-from sandbox.verbs.common import BadInput, add_json, report, say, whole_number
-from sandbox.verbs.laboratory import add_folder, chosen_names, prepare_folder, write_file
+from sandbox.signals import interruptible
+from sandbox.verbs.common import BadInput, add_json, check_json, report, say, whole_number
+from sandbox.verbs.laboratory import add_folder, check_folder, chosen_names, prepare_folder, write_file
 
 NAME = "stability"
 PAGE, FIGURES = "stability.md", "stability.json"
 BUDGET = 540  # [s]
-FELL = 1  # exit code: something fell that held when docs/stability.json was written
+FELL = 1  # exit code: something that held when docs/stability.json was written fell, or there was no time to try it
+FEW = 6  # are named, more are counted
+WRITTEN = (PAGE, FIGURES, "stability.png", "stability.svg")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -51,18 +56,49 @@ def run(options: argparse.Namespace) -> int:
     if options.peers:
         refuse_missing()
         solvers = [*solvers, *PEERS]
-    prepare_folder(options.output)
-    _, seconds = compile_all(say, ("single",))
-    rows, untried = try_all(cases, solvers, options, options.budget - seconds)
-    if options.output is not None:
+    check_json(options)
+    check_folder(options.output, WRITTEN)
+    with interruptible():
+        kernels, seconds = compile_all(say, ("single",))
+        try:
+            rows, untried = try_all(cases, solvers, options, options.budget - seconds)
+        except WorkersError as error:
+            raise BadInput(str(error)) from None
+    back, gone = (
+        steps_back(rows),
+        not_shown(product(cases, solvers), rows),
+    )  # before docs/stability.json is written anew
+    if options.output is not None and rows:
         write_all(options, rows)
+    report(options, [row.to_dict() for row in rows], as_text(rows) if rows else "")
     if untried:
-        say(f"the {options.budget} s were not enough for {untried} of {len(cases) * len(solvers)} (--budget)")
-    report(options, [row.to_dict() for row in rows], as_text(rows))
-    back = steps_back(rows)
+        say(short_of_time(options.budget, untried, len(cases) * len(solvers), kernels, seconds))
     for row in back:
         say(f"{row.case} held with the defaults of {row.solver} when docs/stability.json was written, and fails now")
-    return FELL if back else 0
+    if gone:
+        say(f"{named(gone)} held when docs/stability.json was written, and there was no time to try again")
+    if not rows and not gone:
+        raise BadInput("nothing was tried")
+    return FELL if back or gone else 0
+
+
+def short_of_time(budget: int, untried: int, cells: int, kernels: int, seconds: float) -> str:
+    """What was left out, what took the time, and what to do. kernels, seconds: of compiling and loading."""
+    text = f"the {budget} s were not enough for {untried} of {cells} (--budget)"
+    if kernels and untried == cells:
+        text += f": all went into compiling {kernels} kernels"
+    elif kernels:
+        text += f", for compiling {kernels} kernels took {seconds:.0f} s of them"
+    elif seconds >= budget:
+        text += f": loading what is compiled alone took {seconds:.0f} s"
+    again = "compiled code is kept, so run it once more, or give it" if kernels else "give it"
+    return f"{text}; {again} a larger --budget"
+
+
+def named(cells: list[tuple[str, str]]) -> str:
+    """Each with its solver; many are counted besides."""
+    shown = ", ".join(f"{case} with {solver}" for case, solver in cells[:FEW])
+    return shown if len(cells) <= FEW else f"{len(cells)} cases and solvers, {shown} and others,"
 
 
 def refuse_missing() -> None:
@@ -92,8 +128,9 @@ def try_all(cases: list[str], solvers: list[str], options: argparse.Namespace, s
 
 
 def write_all(options: argparse.Namespace, rows: list[Row]) -> None:
-    """The page, its figures and the heat map."""
+    """The page, its figures and the heat map, in a folder that is made if need be."""
     data = "[\n" + ",\n".join(json.dumps(row.to_dict()) for row in rows) + "\n]\n"
+    prepare_folder(options.output)
     write_file(options.output / PAGE, lambda file: file.write_text(as_markdown(rows)))
     write_file(options.output / FIGURES, lambda file: file.write_text(data))
     write_file(options.output / PAGE, lambda file: draw(rows, file.parent))
