@@ -29,7 +29,7 @@ from sandbox.commands.session import (
     StepOnce,
     StopRecording,
 )
-from sandbox.commands.settings import Set
+from sandbox.commands.settings import Set, SetAll
 from sandbox.commands.spawn import CORNERS, KINDS, LINES, SIZES, Spawn
 
 __all__ = [
@@ -57,6 +57,7 @@ __all__ = [
     "Release",
     "Reset",
     "Set",
+    "SetAll",
     "SetSpeed",
     "Spawn",
     "StartRecording",
@@ -68,7 +69,7 @@ __all__ = [
     "strength_of",
 ]
 
-PHYSICS = {kind.name: kind for kind in (Set, Spawn, Bomb, Grab, MoveHand, Release, DriveMotor, Join, Unjoin)}
+PHYSICS = {kind.name: kind for kind in (Set, SetAll, Spawn, Bomb, Grab, MoveHand, Release, DriveMotor, Join, Unjoin)}
 
 
 def command_from_dict(values: Mapping[str, Any]) -> PhysicsCommand:

@@ -1,7 +1,8 @@
-"""The command that changes a setting of the world: any of them, but for the precision."""
+"""The commands that change settings of the world: any of them, but for the precision; one, or several at once."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -39,6 +40,30 @@ class Set(PhysicsCommand):
 
     def apply(self, simulation: Simulation) -> None:
         simulation.world.set(**{self.setting: self.value})
+
+
+@dataclass(frozen=True)
+class SetAll(PhysicsCommand):
+    """Several settings at once, all or none: SetAll({"solver": "avbd", "iterations": 20}).
+
+    settings: a mapping of names to values; kept as pairs, in its order.
+    """
+
+    settings: Any
+    name = "set_all"
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.settings, Mapping) or not self.settings:
+            raise validate.refuse("settings", self.settings, "a mapping of names of settings to values")
+        ones = [Set(name, value) for name, value in self.settings.items()]
+        self._keep(settings=tuple((one.setting, one.value) for one in ones))
+
+    def to_dict(self) -> dict[str, Any]:
+        ones = [Set(name, value).to_dict() for name, value in self.settings]
+        return {"command": self.name, "settings": {one["setting"]: one["value"] for one in ones}}
+
+    def apply(self, simulation: Simulation) -> None:
+        simulation.world.set(**dict(self.settings))
 
 
 def _checked(info: SettingInfo, value: Any) -> Any:

@@ -151,4 +151,6 @@ def _changed(settings: Settings, command: dict[str, Any]) -> Settings:
     match modern(command):
         case {"command": "set", "setting": name, "value": value}:
             return settings.changed({name: value})
+        case {"command": "set_all", "settings": several}:
+            return settings.changed(several)
     return settings

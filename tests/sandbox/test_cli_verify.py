@@ -13,7 +13,8 @@ import numpy as np
 import pytest
 
 import recordings
-from engine import Snapshot, StepError
+from engine import Settings, Snapshot, StepError
+from sandbox.commands import Set, SetAll
 from sandbox.recorder import PartFile
 from sandbox.simulation import Simulation
 from sandbox.verbs import replay
@@ -170,6 +171,12 @@ def test_a_recording_of_an_older_tumble_is_played_but_not_computed(tumble: Tumbl
     assert [one.gravity for one in settings] == [(0.0, -10.0), (1.0, -9.5)]
     assert [(one.solver, one.iterations) for one in settings] == [("sequential_impulses", n) for n in (10, 7)]
     assert [one.warm_starting for one in settings] == [True, False]
+
+
+def test_settings_are_followed_one_by_one_or_several_at_once() -> None:
+    settings = replay._changed(Settings(), Set("gravity", (1, 2)).to_dict())
+    settings = replay._changed(settings, SetAll({"solver": "avbd", "iterations": 7}).to_dict())
+    assert (settings.gravity, settings.solver, settings.iterations) == ((1.0, 2.0), "avbd", 7)
 
 
 def tampered(recording: Any, **changes: Any) -> Callable[[Path], Any]:

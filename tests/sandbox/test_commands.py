@@ -47,6 +47,9 @@ def setting_value(info: SettingInfo) -> st.SearchStrategy[Any]:
 
 SETTINGS = st.sampled_from(list(CHANGEABLE.values()))
 ANY_SETTING = SETTINGS.flatmap(lambda info: st.builds(ask.Set, st.just(info.name), setting_value(info)))
+SEVERAL = st.lists(SETTINGS, min_size=1, max_size=4, unique_by=lambda info: info.name).flatmap(
+    lambda infos: st.fixed_dictionaries({info.name: setting_value(info) for info in infos}).map(ask.SetAll)
+)
 VALID: dict[type[PhysicsCommand], dict[str, st.SearchStrategy]] = {
     ask.Spawn: {
         "shape": st.sampled_from(["box", "circle", "capsule", "polygon", "segment", "chain"]), "x": PLACE, "y": PLACE,
@@ -74,7 +77,10 @@ SOLID_SPAWN = VALID[ask.Spawn] | {
     "kind": st.sampled_from(["static", "dynamic"]),
 }
 ANY_COMMAND = st.one_of(
-    ANY_SETTING, st.builds(ask.Spawn, **SOLID_SPAWN), *(st.builds(kind, **fields) for kind, fields in VALID.items())
+    ANY_SETTING,
+    SEVERAL,
+    st.builds(ask.Spawn, **SOLID_SPAWN),
+    *(st.builds(kind, **fields) for kind, fields in VALID.items()),
 )
 
 NO_NUMBERS: list[Any] = [
@@ -124,8 +130,8 @@ GOOD: dict[type[PhysicsCommand], dict[str, Any]] = {
 
 
 def test_every_physics_command_is_tested_here() -> None:
-    assert {kind.name: kind for kind in (ask.Set, *VALID)} == PHYSICS
-    assert {kind.name: kind for kind in (ask.Set, *GOOD)} == PHYSICS
+    assert {kind.name: kind for kind in (ask.Set, ask.SetAll, *VALID)} == PHYSICS
+    assert {kind.name: kind for kind in (ask.Set, ask.SetAll, *GOOD)} == PHYSICS
 
 
 # --- made, and made again from JSON -----------------------------------------------------------------------------------
@@ -175,12 +181,22 @@ def test_a_bad_value_of_a_setting_is_refused_by_its_name(setting: str) -> None:
         with pytest.raises(ValueError, match=rf"^{setting} = (.|\n)*: must be ") as refusal:
             ask.Set(setting, value)
         assert len(str(refusal.value)) < 300
+        with pytest.raises(ValueError, match=rf"^{setting} = "):
+            ask.SetAll({"sleeping": False, setting: value})
 
 
 @pytest.mark.parametrize("setting", ["precision", "name", "gravity_x", "", None, 3, [], True])
 def test_what_is_no_setting_is_refused(setting: Any) -> None:
     with pytest.raises(ValueError, match=r"^setting = "):
         ask.Set(setting, "single")
+
+
+@pytest.mark.parametrize("settings", [{}, [], None, "solver", 3, [("solver", "avbd")], {"precision": "double"}, {1: 2}])
+def test_several_settings_are_a_mapping(settings: Any) -> None:
+    with pytest.raises(ValueError, match=r"^settings? = "):
+        ask.SetAll(settings)
+    with pytest.raises(ValueError, match=r"^settings? = "):
+        command_from_dict({"command": "set_all", "settings": settings})
 
 
 @pytest.mark.parametrize(
@@ -296,6 +312,17 @@ def test_settings_are_set(simulation: Simulation) -> None:
         for value in (False, True):
             simulation.apply(ask.Set(name, value))
             assert getattr(simulation.world.settings, name) is value
+
+
+def test_several_settings_are_set_all_or_none(simulation: Simulation) -> None:
+    simulation.apply(ask.SetAll({"solver": "sequential_impulses", "iterations": 33, "gravity": [1, 2]}))
+    settings = simulation.world.settings
+    assert (settings.solver, settings.iterations, settings.gravity) == ("sequential_impulses", 33, (1.0, 2.0))
+    bouncing = Simulation("Effects/Restitution")
+    before = bouncing.world.settings
+    with pytest.raises(ValueError, match="restitution"):
+        bouncing.apply(ask.SetAll({"iterations": 50, "solver": "avbd"}))
+    assert bouncing.world.settings == before
 
 
 def test_spawns_boxes_side_by_side(simulation: Simulation) -> None:
@@ -441,7 +468,7 @@ def test_no_more_bodies_than_there_is_room_for(
 def test_whatever_is_allowed_can_be_applied_and_stepped(command: PhysicsCommand) -> None:
     simulation = Simulation(SCENES["The Talk/Single Box"])
     simulation.apply(ask.Grab(1, 0.0, 4.0))
-    with suppress(ValueError) if isinstance(command, ask.Join) else nullcontext():  # there may be no such body
+    with suppress(ValueError) if isinstance(command, ask.Join | ask.SetAll) else nullcontext():  # not together
         simulation.apply(command)
     for _ in range(3):
         simulation.step()

@@ -17,6 +17,7 @@ from sandbox.commands import (
     Pause,
     Play,
     Set,
+    SetAll,
     SetSpeed,
     Spawn,
     StartRecording,
@@ -143,6 +144,8 @@ class FakeSession:
             return make_frame(self._bodies, scene=frame.scene, **kept)
         if isinstance(command, Set):
             settings = settings.changed({command.setting: command.value})
+        elif isinstance(command, SetAll):
+            settings = settings.changed(dict(command.settings))
         elif isinstance(command, SetSpeed):
             status = replace(status, speed=command.speed)
         elif isinstance(command, Pause | Play):

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from engine import SOLVERS
-from sandbox.commands import Reset, Set
+from sandbox.commands import Reset, Set, SetAll
 from sandbox.lab.accuracy import Outcome, Row, Series, over
 from sandbox.lab.experiments import EXPERIMENTS
 from sandbox.session import Session
@@ -24,7 +24,7 @@ from web import App
 from web.hit import pieces_at
 from web.overlays.ghosts import Ghosts, outlines
 from web.panels import laboratory
-from web.panels.laboratory import BUSY, IDLE, can_be_live, choices_of, commands_of
+from web.panels.laboratory import BUSY, IDLE, can_be_live, choices_of, settings_of
 from web.stage import Stage
 
 APPLY = "Give this setting to the scene"
@@ -53,10 +53,10 @@ def test_a_live_scene_is_offered_what_it_can_have_the_best_first() -> None:
     ]
 
 
-def test_a_setting_is_the_solver_first() -> None:
-    soft = [("solver", "soft_step"), ("substeps", 8), ("iterations", 2), ("stiffness", "fixed")]
-    assert commands_of(ROWS[1]) == soft
-    assert commands_of(ROWS[0]) == [("solver", "sequential_impulses"), ("iterations", 50)]
+def test_a_setting_is_the_solver_and_its_numbers() -> None:
+    soft = {"solver": "soft_step", "substeps": 8, "iterations": 2, "stiffness": "fixed"}
+    assert settings_of(ROWS[1]) == soft
+    assert settings_of(ROWS[0]) == {"solver": "sequential_impulses", "iterations": 50}
 
 
 class Measuring:
@@ -118,8 +118,9 @@ def test_measuring_shows_progress_then_the_diagram_and_a_choice_goes_to_the_scen
     assert len(prop(client, "setting", "options")) == 2
     client.set("setting", list(choices_of(ROWS))[1])
     client.set(APPLY, True)
-    session.wait_for(Set, 2)
-    assert session.of(Set) == [Set("solver", "sequential_impulses"), Set("iterations", 50)]
+    session.wait_for(SetAll)
+    assert session.of(SetAll) == [SetAll({"solver": "sequential_impulses", "iterations": 50})]
+    assert session.of(Set) == []
 
 
 def test_a_second_press_stops_it(page: Page, measuring: Measuring) -> None:

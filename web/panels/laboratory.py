@@ -14,7 +14,7 @@ from typing import Any
 import viser
 
 from engine import SOLVERS
-from sandbox.commands import Set
+from sandbox.commands import SetAll
 from sandbox.frame import Frame
 from sandbox.lab.accuracy import Outcome, Row, all_series, front, sweep
 from sandbox.lab.accuracy.chart import as_svg
@@ -99,8 +99,7 @@ class LaboratoryPanel:
     async def _on_apply(self, event: viser.GuiEvent[Any]) -> None:
         row = self._choices.get(self._point.value)
         if event.client is not None and row is not None:
-            for name, value in commands_of(row):
-                self._desk.submit(partial(Set, name, value))
+            self._desk.submit(partial(SetAll, settings_of(row)))
 
     # --- in the background --------------------------------------------------------------------------------------
 
@@ -156,6 +155,6 @@ def choices_of(rows: list[Row]) -> dict[str, Row]:
     return {f"{row.solver}, {row.setting}: {number(row.error)}, {row.cost_ms:.2g} ms": row for row in ordered}
 
 
-def commands_of(row: Row) -> list[tuple[str, Any]]:
-    """Names and values of what a live scene is to be set to, the solver first: it brings its own numbers along."""
-    return [("solver", row.solver), *((name, row.settings[name]) for name in SETTABLE if name in row.settings)]
+def settings_of(row: Row) -> dict[str, Any]:
+    """What a live scene is to be set to, all of it or, where the scene cannot have the solver, nothing."""
+    return {"solver": row.solver, **{name: row.settings[name] for name in SETTABLE if name in row.settings}}
