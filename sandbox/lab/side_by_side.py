@@ -13,7 +13,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from engine import StepError
-from sandbox.commands import command_from_dict
+from sandbox.commands import Set, SetAll, command_from_dict
 from sandbox.frame import Frame
 from sandbox.simulation import Simulation
 
@@ -35,7 +35,8 @@ class SideBySide:
         self._queue: queue.Queue[Frame | None] = queue.Queue(MOST_WAITING)
         self._solvers: tuple[str, ...] = ()
         self._simulations: dict[str, Simulation] = {}
-        self._lost: dict[str, str] = {}
+        self._lost: dict[str, str] = {}  # why a solver is not there, a sentence each
+        self._ended = ""  # why it follows no more
         self._step = -1
         self._scene = ""
         self._latest: Mapping[str, Frame] = {}
@@ -49,17 +50,26 @@ class SideBySide:
         """The latest frame of each solver that is compared."""
         return self._latest
 
+    @property
+    def ended(self) -> bool:
+        """Whether it could not keep up, and follows nothing until it is asked again."""
+        return bool(self._ended)
+
     def choose(self, solvers: tuple[str, ...], like: Frame) -> None:
         """Compares with these from the scene's next beginning. Compiles what they call for, which may take a while."""
         if self._thread is None:
             self._thread = threading.Thread(target=self._run, name="tumble-compare", daemon=True)
             self._thread.start()
+        self._ended = ""
+        self._solvers = ()  # what is shown while this compiles is not kept: the scene begins again afterwards
         with self._lock:
-            self._solvers, self._simulations, self._latest = solvers, {}, {}
+            self._simulations, self._latest = {}, {}
             self._step = -1
             self._lost = {}
             for solver in solvers:
                 self._rehearse(solver, like)
+            self._forget_waiting()
+            self._solvers = solvers
         self._tell()
 
     def show(self, frame: Frame) -> None:
@@ -69,7 +79,8 @@ class SideBySide:
                 self._queue.put_nowait(frame)
             except queue.Full:
                 self._solvers = ()
-                self._say("the comparison could not keep up, and ended")
+                self._ended = "the comparison could not keep up, and ended"
+                self._tell()
 
     def close(self) -> None:
         self._solvers = ()
@@ -77,6 +88,13 @@ class SideBySide:
             self._queue.put_nowait(None)
 
     # --- the thread ---------------------------------------------------------------------------------------------
+
+    def _forget_waiting(self) -> None:
+        """Frames from before."""
+        with contextlib.suppress(queue.Empty):
+            while self._queue.get_nowait() is not None:
+                pass
+            self._queue.put_nowait(None)  # that it closes is no frame
 
     def _run(self) -> None:
         while (frame := self._queue.get()) is not None:
@@ -93,12 +111,13 @@ class SideBySide:
             self._follow(frame)
 
     def _begin(self, frame: Frame) -> None:
-        """The scene is at its start, or one step from it."""
-        self._simulations = {}
+        """The scene is at its start, or one step from it: all that can have it begin, whatever happened before."""
+        self._simulations, self._lost = {}, {}
         for solver in self._solvers:
-            if solver not in self._lost and (made := self._made(solver, frame)) is not None:
+            if (made := self._made(solver, frame)) is not None:
                 self._simulations[solver] = made
         self._step, self._scene = 0, frame.scene
+        self._tell()
         self._publish()
 
     def _follow(self, frame: Frame) -> None:
@@ -113,9 +132,12 @@ class SideBySide:
             try:
                 apply_all(simulation, frame.commands)
                 simulation.step()
-            except StepError as error:
+            except (
+                StepError,
+                ValueError,
+            ) as error:  # a step that failed, or a command refused
                 del self._simulations[solver]
-                self._lost[solver] = str(error)
+                self._lost[solver] = f"{solver} stopped following: {error}"
                 self._tell()
         if self._queue.empty():
             self._publish()
@@ -131,8 +153,7 @@ class SideBySide:
         try:
             return Simulation(like.scene, like.dt, solver=solver, **settings)
         except ValueError as error:
-            self._lost[solver] = str(error)
-            self._tell()
+            self._lost[solver] = f"{solver}: {error}"
             return None
 
     def _rehearse(self, solver: str, like: Frame) -> None:
@@ -141,18 +162,23 @@ class SideBySide:
             for _ in range(REHEARSED if simulation is not None else 0):
                 simulation.step()  # type: ignore[union-attr]
         except StepError as error:
-            self._lost[solver] = str(error)
+            self._lost[solver] = f"{solver}: {error}"
 
     def _tell(self) -> None:
-        self._say("; ".join(f"{solver}: {why}" for solver, why in self._lost.items()))
+        self._say(self._ended or "; ".join(self._lost.values()))
 
 
 def apply_all(simulation: Simulation, commands: tuple[dict[str, Any], ...]) -> None:
-    """What the live scene was told; what this one cannot do it goes without."""
+    """What the live scene was told, but for what each solver keeps for itself. ValueError if this one cannot do it."""
     for values in commands:
-        if values.get("command") == "set" and values.get("setting") in OWN:
-            continue
-        try:
-            simulation.apply(command_from_dict(values))
-        except ValueError:
-            continue
+        command = command_from_dict(values)
+        left = without_own(command) if isinstance(command, Set | SetAll) else command
+        if left is not None:
+            simulation.apply(left)
+
+
+def without_own(command: Set | SetAll) -> SetAll | None:
+    """What is left of it without the settings that each solver keeps for itself; None if nothing is."""
+    pairs = command.settings if isinstance(command, SetAll) else ((command.setting, command.value),)
+    left = {name: value for name, value in pairs if name not in OWN}
+    return SetAll(left) if left else None

@@ -15,6 +15,7 @@ from engine import SOLVERS
 from sandbox.commands import Reset, Set, SetAll
 from sandbox.lab.accuracy import Outcome, Row, Series, over
 from sandbox.lab.experiments import EXPERIMENTS
+from sandbox.lab.side_by_side import SideBySide
 from sandbox.session import Session
 from tests.web.browser import look, open_page
 from tests.web.fake_session import BODY, FakeSession, make_frame, pyramid, wait_until
@@ -266,3 +267,19 @@ def test_every_solver_has_a_switch(page: Page) -> None:
         client.control(name.replace("_", " "))
     client.set("soft step", True)
     session.wait_for(Reset)
+
+
+def test_a_comparison_that_cannot_keep_up_puts_its_switch_off_and_says_so(
+    page: Page, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    session, client = page
+    client.set("soft step", True)
+    session.wait_for(Reset)
+    (others,) = (viewer for viewer in session._viewers if isinstance(viewer, SideBySide))
+    with others._lock:
+        wait_until(lambda: (session.publish(), others.ended)[1])
+    sees(client, "could not keep up")
+    wait_until(lambda: (client.read(), prop(client, "soft step", "value") is False)[1])
+    client.set("soft step", True)
+    session.wait_for(Reset, 2)
+    assert not others.ended

@@ -29,7 +29,9 @@ class ComparingPanel:
         self._ghosts = Ghosts(desk.page.server.scene, {name: rgb(colour_of(name, ())) for name in SOLVERS})
         with desk.gui.add_folder("Compare solvers", expand_by_default=False):
             self._text = desk.gui.add_html(small_text(INTRODUCTION))
-            self._switches = {name: desk.gui.add_checkbox(name.replace("_", " "), False) for name in SOLVERS}
+            self._switches: dict[str, Any] = {
+                name: desk.gui.add_checkbox(name.replace("_", " "), False) for name in SOLVERS
+            }
             self._legend = desk.gui.add_html(legend())
         for switch in self._switches.values():
             switch.on_update(self._on_switch)
@@ -61,6 +63,9 @@ class ComparingPanel:
     def _note(self, text: str) -> None:
         self._notice = text
         self._text.content = small_text(text or INTRODUCTION)
+        if self._others.ended:
+            for switch in self._switches.values():
+                switch.value = False
 
 
 def rgb(colour: str) -> Colour:

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from engine import StepError
-from sandbox.commands import Set, Spawn
+from sandbox.commands import Set, SetAll, Spawn
 from sandbox.frame import Frame
 from sandbox.lab import side_by_side
 from sandbox.lab.side_by_side import SideBySide
@@ -141,7 +141,7 @@ def test_a_solver_that_loses_its_state_is_named(live: Live, said: list[str], mon
 
     monkeypatch.setattr(simulation, "step", fail)
     reaches(live, "soft_step", live.step(2))
-    assert said[-1] == f"{TALK}: body 3 has left"
+    assert said[-1] == f"{TALK} stopped following: body 3 has left"
     assert set(live.others.frames) == {"soft_step"}
 
 
@@ -153,4 +153,51 @@ def test_one_that_cannot_keep_up_ends(live: Live, said: list[str], monkeypatch: 
     with others._lock:
         live.step(8)
     assert "could not keep up" in said[-1]
+    assert others.ended
+    others._tell()  # as a solver that is lost on the other thread does
+    assert "could not keep up" in said[-1]
+    others.choose((TALK,), live.show())
+    assert (others.ended, said[-1]) == (False, "")
     others.close()
+
+
+def test_what_is_shown_while_it_compiles_does_not_end_it(
+    live: Live, said: list[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Compiling takes longer than all the frames that may wait."""
+    monkeypatch.setattr(side_by_side, "MOST_WAITING", 3)
+    others = live.others = SideBySide(said.append)
+    rehearse = others._rehearse
+    monkeypatch.setattr(others, "_rehearse", lambda *arguments: (live.step(20), rehearse(*arguments)))
+    others.choose((TALK,), live.show())
+    assert (others.ended, said[-1]) == (False, "")
+    live.simulation = Simulation(SCENE)
+    live.show()
+    assert reaches(live, TALK, live.step()).step == 1
+    others.close()
+
+
+def test_a_solver_that_is_refused_what_the_live_one_does_stops_and_says_why(live: Live, said: list[str]) -> None:
+    """A body that bounces is spawned beside a solver that has no restitution."""
+    live.others.choose((TALK, "soft_step"), live.show())
+    live.show()
+    reaches(live, TALK, live.step())
+    live.apply(Spawn("circle", x=0.0, y=6.0, restitution=0.5))
+    reaches(live, "soft_step", live.step(2))
+    assert set(live.others.frames) == {"soft_step"}
+    assert said[-1].startswith(f"{TALK} stopped following: ")
+    assert "restitution" in said[-1]
+    live.simulation = Simulation(SCENE)  # which it can have, as before
+    live.show()
+    reaches(live, TALK, live.step())
+    assert said[-1] == ""
+
+
+def test_several_settings_at_once_leave_a_solver_its_own_numbers(live: Live) -> None:
+    live.others.choose((TALK,), live.show())
+    live.show()
+    live.apply(SetAll({"solver": "soft_step", "substeps": 9, "warm_starting": False}))
+    live.apply(SetAll({"substeps": 7, "iterations": 2}))
+    settings = reaches(live, TALK, live.step()).settings
+    assert (settings.solver, settings.substeps, settings.iterations) == (TALK, 1, 10)
+    assert not settings.warm_starting
