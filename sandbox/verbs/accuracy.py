@@ -93,15 +93,16 @@ def _why_nothing(outcome: Outcome, budget: float) -> str:
 
 def _where_time_went(outcome: Outcome, budget: float) -> str:
     """What took all of the budget, and what to do."""
-    if outcome.compiled or "" in outcome.unprepared:
+    scenes = [scene for scene in outcome.unprepared if scene]
+    if not scenes and (outcome.compiled or "" in outcome.unprepared):
         count = f" {outcome.compiled} kernels" if outcome.compiled else ""
         return (
             f"all of the {budget:g} s went into compiling{count}; compiled code is kept, so run it once more,"
             " or give it a larger --budget"
         )
-    if outcome.unprepared:
-        return f"making what {outcome.unprepared[0]} is compared with took all of the {budget:g} s; {LARGER}"
-    return f"no run ended within {budget:g} s; {LARGER} (once more may do, if it was compiling: compiled code is kept)"
+    if scenes:
+        return f"making what {scenes[0]} is compared with took all of the {budget:g} s; {LARGER}"
+    return f"no run ended within {budget:g} s; {LARGER}"
 
 
 def workers_for(options: argparse.Namespace) -> Workers:

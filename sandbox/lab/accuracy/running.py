@@ -76,6 +76,8 @@ class Run:
             self._leave(job.task)
             if job.task is None:
                 self.outcome.unprepared.append(job.prepares)
+        if self._flying and self.elapsed() > self._seconds + GRACE:
+            self.outcome.unprepared.append("")  # runs look at the clock at each step: what does not end is compiling
 
     def _submit(self) -> bool:
         """Hands out jobs until every worker has one; whether any is under way."""

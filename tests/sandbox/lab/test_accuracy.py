@@ -467,6 +467,20 @@ def test_what_there_was_no_time_to_prepare_is_known(monkeypatch: pytest.MonkeyPa
     assert outcome.unprepared == ["sliding", ""]
 
 
+class Compiling(Threads):
+    """Each task takes longer than there is time."""
+
+    def submit(self, function: Any, *arguments: Any) -> Any:
+        return super().submit(time.sleep, 2.0)
+
+
+def test_a_run_that_does_not_end_when_its_time_is_over_is_compiling(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("sandbox.lab.accuracy.running.GRACE", 0.1)
+    outcome = sweep([SLIDING], TINY[:1], Compiling(), seconds=0.2, repeats=1)
+    assert outcome.unprepared == [""]
+    assert sum(outcome.left.values()) == 2
+
+
 @pytest.mark.usefixtures("tiny")
 def test_what_no_solver_can_run_is_one_line(tumble: Tumble, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("sandbox.verbs.accuracy.all_series", lambda *names: TINY[1:])
