@@ -228,11 +228,19 @@ def add(
     return kind(world, row, int(storage.tables["joints"]["serial"][row]))
 
 
+PARTS = (
+    ("spring", "hertz", "joint springs"),
+    ("motored", "motor_speed", "joint motors"),
+    ("limited", "lower", "joint limits"),
+)
+"""Columns of a turn or slide: what tells that there is one, what is told of it if it is refused, the effect."""
+
+
 def refuse_parts(world: World, *parts: dict[str, Any] | None) -> None:
-    """ValueError if the solver lacks springs or limits of joints, and one is wanted."""
+    """ValueError if the solver lacks springs, motors or limits of joints, and one is wanted."""
     lacks = SOLVERS[world.solver].lacks
     for part in parts:
-        for field, name, effect in (("spring", "hertz", "joint springs"), ("limited", "lower", "joint limits")):
+        for field, name, effect in PARTS:
             if part and part.get(field) and effect in lacks:
                 raise validate.refuse(name, part.get(name), f"None with the solver {world.solver!r}")
 

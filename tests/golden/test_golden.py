@@ -13,7 +13,7 @@ def test_every_scene_and_solver_has_a_golden_hash() -> None:
     assert known == set(hashes.cases()), "make golden"
 
 
-@pytest.mark.parametrize(("scene", "solver"), hashes.cases(), ids=" ".join)
+@pytest.mark.parametrize(("scene", "solver"), hashes.cases(), ids=[", ".join(case) for case in hashes.cases()])
 def test_golden_hash(scene: str, solver: str) -> None:
     assert hashes.golden_hash(scene, solver) == hashes.load()[scene][solver]
 

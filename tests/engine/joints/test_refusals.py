@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from engine import Box, World
+from engine import SOLVERS, Box, World
 from tests.engine.joints.making import MAKERS, two_free
 from tests.engine.test_validate import NO_NUMBERS, NO_SWITCHES, NO_VECTORS
 from tests.engine.worlds import fingerprint
@@ -169,3 +169,23 @@ def test_what_is_given_is_what_is_told(kind: str, name: str) -> None:
         setattr(joint, name, given)
         assert getattr(joint, name) == told
     assert math.isfinite(joint.torque)
+
+
+@pytest.mark.parametrize("solver", [name for name, solver in SOLVERS.items() if "joint motors" in solver.lacks])
+@pytest.mark.parametrize("kind", ["revolute", "distance", "prismatic", "wheel"])
+def test_a_solver_without_motors_refuses_them(kind: str, solver: str) -> None:
+    world = World(solver=solver)
+    a, b = world.create_body(kind="static"), world.create_body(Box(1, 1), position=(2, 0))
+    where: dict[str, Any] = {"distance": {"anchor1": (0, 0), "anchor2": (2, 0)}}.get(kind, {"anchor": (1, 0)})
+    if kind in ("prismatic", "wheel"):
+        where["axis"] = (1, 0)
+    make = getattr(world, f"create_joint_{kind}")
+    before = fingerprint(world)
+    with pytest.raises(ValueError, match=rf"^motor_speed = 2\.0: must be None with the solver '{solver}'$"):
+        make(a, b, **where, motor_speed=2.0)
+    assert fingerprint(world) == before
+    joint = make(a, b, **where)
+    before = fingerprint(world)
+    with pytest.raises(ValueError, match=r"^motor_speed = 2\.0: must be None with"):
+        joint.motor_speed = 2.0
+    assert fingerprint(world) == before
