@@ -85,6 +85,7 @@ class State:
         self.layout = Layout()  # touching arbiters by colour
         self.joint_layout = JointLayout()
         self.chains: Any = None  # joints that are solved at once
+        self.colours_are_stale = True  # something began or ceased to touch, or arbiters are others
         self.solve_plan: Any = None  # what the solver reads off content and colours, until either changes
         self.addresses: dict[Any, int] = {}  # of compiled kernels, see run.py; until content changes
         self.repetition: Any = None  # what steps in a row read off all that, see run.py
@@ -220,6 +221,8 @@ class State:
         if "filters" in self.effects:
             columns = (self.shapes.ensure(name) for name in ("category", "mask", "group"))
             count = drop_filtered(pairs, count, *columns)
+        if count == 0 and self.arbiters.count == 0 and self.solve_plan is not None and not self.colours_are_stale:
+            return  # no pair may touch, as before: what was listed and planned holds
         old, new = self.arbiters, self.spare_arbiters
         if new.capacity < count:
             new = ArbiterTable(self.precision, max(16, count + count // 2))

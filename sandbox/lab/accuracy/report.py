@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Iterable, Sequence
 
 from rich.table import Table
@@ -19,6 +20,7 @@ from sandbox.lab.tables import rendered
 
 PICTURES = "accuracy"  # the folder of them
 NONE = "-"
+WIDTH = 116  # of the page's lines of text [characters]
 FEW = 8  # scenes are named, more are counted
 LEVELS = ("coarse", "finer", "double precision and fixed stiffness")
 
@@ -102,10 +104,10 @@ def as_markdown(outcome: Outcome) -> str:
         "",
         "### What is not applicable",
         "",
-        *(f"- {line.removeprefix('not applicable: ')}" for line in not_applicable(outcome)),
+        *(wrapped(f"- {line.removeprefix('not applicable: ')}", "  ") for line in not_applicable(outcome)),
     ]
     if lines := left_out(outcome):
-        parts += ["", "### What is not in these tables", "", *(f"- {line}" for line in lines)]
+        parts += ["", "### What is not in these tables", "", *(wrapped(f"- {line}", "  ") for line in lines)]
     for scene in dict.fromkeys(group.scene for group in groups):
         own = [group for group in groups if group.scene == scene]
         parts += ["", f"### {own[0].title.partition(';')[0]}", ""]
@@ -130,10 +132,15 @@ def cheapest_markdown(groups: Iterable[Group]) -> list[str]:
     return lines
 
 
+def wrapped(text: str, indent: str = "") -> str:
+    """A paragraph in lines that fit a window; all but the first are indented."""
+    return textwrap.fill(text, WIDTH, subsequent_indent=indent, break_long_words=False, break_on_hyphens=False)
+
+
 def best_of(group: Group) -> list[str]:
     """A measure's best of each solver: a line a solver."""
     lines = [
-        f"{group.says}: the best of each",
+        wrapped(f"{group.says}: the best of each"),
         "",
         "| solver | setting | error | predicted | ms a second | solves |",
         "|---|---|---:|---:|---:|---:|",
